@@ -1,0 +1,50 @@
+"""Build the C core as ``trochia._core`` through cffi's API mode.
+
+In: every header of ``core/shared`` and ``core/host``, which are also the schema cffi reads (so they hold plain
+declarations; preprocessor lines and ``static inline`` bodies, from a line starting so to the ``}`` in the first
+column, are left out for cffi).  Out: one extension module for the stable ABI.
+"""
+
+import os
+import re
+from pathlib import Path
+
+from cffi import FFI
+
+CORE = Path(__file__).resolve().parent
+ROOT = CORE.parent
+# Order matters to cffi: a struct is declared before it is used.  Shared first, then by the data's way through the house.
+HEADERS = [
+    "host/move.h",
+    "host/path.h",
+]
+FLAGS = ["-std=c11", "-O3", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-ffp-contract=off", "-fno-math-errno"]
+
+
+def declarations(text: str) -> str:
+    """Return what cffi may read of a header: declarations without preprocessor lines and inline bodies."""
+    text = re.sub(r"^static inline .*?^}\n", "", text, flags=re.DOTALL | re.MULTILINE)
+    return re.sub(r"^#.*(?:\\\n.*)*$", "", text, flags=re.MULTILINE)
+
+
+def make_builder() -> FFI:
+    """Return the cffi builder of the core; TROCHIA_CFLAGS adds flags (the sanitiser build uses it)."""
+    ffi = FFI()
+    for header in HEADERS:
+        ffi.cdef(declarations((CORE / header).read_text()))
+    sources = sorted(str(path.relative_to(ROOT)) for path in CORE.glob("host/*.c"))
+    ffi.set_source(
+        "trochia._core",
+        "\n".join(f'#include "{header}"' for header in HEADERS),
+        sources=sources,
+        include_dirs=[str(CORE)],
+        # cffi's own glue is not ours to warn about
+        extra_compile_args=[*FLAGS, "-Wno-conversion", *os.environ.get("TROCHIA_CFLAGS", "").split()],
+        extra_link_args=os.environ.get("TROCHIA_CFLAGS", "").split(),
+        libraries=["m"],
+        py_limited_api=True,
+    )
+    return ffi
+
+
+builder = make_builder()

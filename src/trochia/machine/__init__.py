@@ -1,0 +1,1 @@
+"""Frozen descriptions of machines: plain data and the equations that belong to it."""
