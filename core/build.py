@@ -13,7 +13,7 @@ from cffi import FFI
 
 CORE = Path(__file__).resolve().parent
 ROOT = CORE.parent
-# Order matters to cffi: a struct is declared before it is used.  Shared first, then by the data's way through the house.
+# A struct is declared before it is used: shared first, then by the data's way through the house.
 HEADERS = [
     "host/move.h",
     "host/path.h",

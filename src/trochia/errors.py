@@ -163,13 +163,13 @@ class RemoteProtocolError(LinkError):
     code = "protocol-remote"
 
 
-class VersionMismatch(LinkError):
+class VersionMismatch(LinkError):  # noqa: N818 - the plan of the house names it so
     """Both sides speak, but not the same schema."""
 
     code = "version"
 
 
-class LinkTimeout(LinkError):
+class LinkTimeout(LinkError):  # noqa: N818 - likewise
     """No answer in time."""
 
     code = "timeout"

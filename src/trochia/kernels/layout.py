@@ -35,7 +35,7 @@ def dtype_of(struct: str) -> np.dtype[np.void]:
 
 
 def pointer(array: np.ndarray[Any, Any], ctype: str) -> Any:  # noqa: ANN401 - a cffi pointer has no Python type
-    """Return a C pointer of type ``ctype`` to a C-contiguous array's first element; the caller keeps the array alive."""
+    """Return a C pointer of type ``ctype`` to a contiguous array's data; the caller keeps the array alive."""
     if not array.flags.c_contiguous:
         raise ValueError(f"a C kernel needs a contiguous array, not strides {array.strides}")
     return ffi.cast(ctype, ffi.from_buffer(array)) if array.size else ffi.NULL
