@@ -48,6 +48,16 @@ class Encoder:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class PulseTiming:
+    """What a driver's step and direction inputs ask: step high, step low, direction before and after a step [s]."""
+
+    length: float = 1e-6
+    space: float = 1e-6
+    setup: float = 1e-6
+    hold: float = 1e-6
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Joint:
     """One motor and what it drives.
 
@@ -70,6 +80,7 @@ class Joint:
     acceleration: float | None = None
     jerk: float | None = None
     pulse_rate: float | None = None
+    pulses: PulseTiming = PulseTiming()
 
     @property
     def steps_per_unit(self) -> Fraction | None:
