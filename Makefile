@@ -1,19 +1,92 @@
-# The table of contents for developers.  Every target does its own set-up on a bare Debian machine.
+# The table of contents for developers: every target does its own set-up on a bare Debian machine.
+#
+#   make run     set up, then prove a sample job on a sample machine: verdict, and where the report lies
+#   make test    set up (Debian packages included) and run every test
+#   make check   format, lint, types, layers, C warnings, sanitisers, tests, docs: what CI runs
+#   make bench   measure, as ratios against a reference in the same call      make soak    long seeded campaigns
+#   make golden  rewrite the golden files for review in the diff              make oracle  compare with rs274
+#   make docs    the documentation, into docs/_build                          make clean   remove what was built
+
 PYTHON ?= python3
-VENV := .venv
-BIN := $(VENV)/bin
-SETUP := $(VENV)/.setup-stamp
-CORE := $(wildcard core/*.py core/host/*.[ch] core/shared/*.[ch])
+VENV   := .venv
+BIN    := $(VENV)/bin
+CORE   := $(wildcard core/*.py core/host/*.[ch] core/shared/*.[ch])
+C_CODE := $(wildcard core/host/*.[ch] core/shared/*.[ch])
+C_FLAGS := -std=c11 -O2 -Wall -Wextra -Wconversion -Wswitch-enum -Werror -ffp-contract=off
+JOBS   ?= 2
 
-.PHONY: setup run test check core
+.DEFAULT_GOAL := help
+.PHONY: help setup setup-test run test check format lint types layers c-format c-warnings sanitise docs bench soak golden oracle clean
 
-setup: $(SETUP)
+help:
+	@sed -n '1,/^$$/s/^# \{0,1\}//p' Makefile
 
-$(SETUP): pyproject.toml setup.py constraints.txt packages.txt $(CORE)
+setup: $(VENV)/.setup
+
+$(VENV)/.setup: pyproject.toml setup.py constraints.txt packages.txt $(CORE)
 	tools/apt-install packages.txt
-	test -d $(VENV)/bin || $(PYTHON) -m venv $(VENV)
-	$(BIN)/pip install --quiet --disable-pip-version-check -c constraints.txt -e . --group test --group lint --group docs
+	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install -q --disable-pip-version-check -c constraints.txt pip setuptools wheel
+	$(BIN)/python -m pip install -q --disable-pip-version-check -c constraints.txt -e .
 	touch $@
 
-core: $(CORE)  ## rebuild the C core in place
+setup-test: $(VENV)/.setup-test
+
+$(VENV)/.setup-test: $(VENV)/.setup packages-test.txt
+	tools/apt-install packages-test.txt
+	$(BIN)/python -m pip install -q --disable-pip-version-check -c constraints.txt --group test --group lint --group docs
+	touch $@
+
+core: $(CORE)
 	flock .core.lock $(BIN)/python setup.py -q build_ext --inplace
+.PHONY: core
+
+run: setup
+	$(BIN)/trochia simulate programs/contour.ngc -m xy-table -o out/contour
+
+test: setup-test
+	$(BIN)/python -m pytest -q -n $(JOBS) --dist worksteal
+
+check: setup-test format lint types layers c-format c-warnings sanitise docs test
+
+format: setup-test
+	$(BIN)/ruff format --check .
+
+lint: setup-test
+	$(BIN)/ruff check .
+
+types: setup-test
+	$(BIN)/basedpyright
+
+layers: setup-test
+	$(BIN)/lint-imports
+
+c-warnings: setup-test
+	for unit in core/host/*.c; do gcc $(C_FLAGS) -Icore -fsyntax-only $$unit || exit 1; done
+
+c-format: setup-test
+	$(BIN)/clang-format --dry-run --Werror $(C_CODE)
+
+# the core's own tests once more, on a build that aborts at undefined behaviour or a bad address
+sanitise: setup-test
+	tools/sanitise
+
+docs: setup-test
+	$(BIN)/python -m sphinx -q -W --keep-going -b html docs docs/_build/html
+
+bench: setup-test
+	for bench in benchmarks/bench_*.py; do $(BIN)/python $$bench || exit 1; done
+
+golden: setup-test
+	$(BIN)/python tests/golden/rewrite.py
+
+# every law and every comparison, on a hundred times as many cases, with a seed that is printed
+soak: setup-test
+	$(BIN)/python -m pytest -q --hypothesis-profile=soak tests/properties tests/oracle
+
+oracle: setup-test
+	$(BIN)/python -m pytest -q tests/oracle
+
+clean:
+	rm -rf build dist out docs/_build .pytest_cache .ruff_cache .hypothesis src/*.egg-info src/trochia/_core*
+	rm -rf $(VENV)
