@@ -1,0 +1,1 @@
+"""Numbers and pictures from programs, plans and recordings; pure functions, no motion."""

@@ -1,0 +1,78 @@
+"""Options that several commands share, and how they speak to a person and to a script."""
+
+from __future__ import annotations
+
+import re
+import sys
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from trochia import units
+from trochia.errors import UnitError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+_PLACE = re.compile(r"\s*([XYZABCUVW])\s*=?\s*([+-]?(?:\d+\.?\d*|\.\d+))\s*(mm|cm|m|in|deg|°)?\s*,?", re.IGNORECASE)
+
+type_program = click.Path(exists=True, dir_okay=False, readable=True, allow_dash=True)
+
+machine = click.option(
+    "-m", "--machine", "machine_name", required=True, metavar="MACHINE",
+    help="Machine file, or the name of one that comes with Trochia (`trochia machine show` lists them).",
+)  # fmt: skip
+as_json = click.option(
+    "--json", "as_json", is_flag=True, help="One JSON object on standard output; progress on standard error."
+)
+profile = click.option(
+    "--profile", metavar="NAME", help="Velocity profile; without it the machine's own, else trapezoid."
+)
+
+
+def _place(_context: click.Context, _parameter: click.Parameter, value: str | None) -> dict[str, float]:
+    """Return ``X10Y-5`` as {axis: offset} [mm, degree]."""
+    place: dict[str, float] = {}
+    rest = value or ""
+    while rest:
+        match = _PLACE.match(rest)
+        if match is None:
+            raise click.BadParameter(f"expected axis letters with numbers, like X10Y-5 or X10mm,A90deg, not {rest!r}")
+        name, number, unit = match.groups()
+        letter = name.upper()
+        if letter in place:
+            raise click.BadParameter(f"{letter} is given twice")
+        rotary = letter in "ABC"
+        try:
+            place[letter] = units.parse(
+                f"{number} {unit or ('deg' if rotary else 'mm')}", "angle" if rotary else "length"
+            )
+        except UnitError as error:
+            raise click.BadParameter(f"{letter}: {error.message}") from error
+        rest = rest[match.end() :]
+    return place
+
+
+at = click.option(
+    "--at", "place", callback=_place, metavar="X..Y..",
+    help="Where the part lies: offset of the program's zero, in mm (or with a unit), like X10Y-5.",
+)  # fmt: skip
+
+
+def common(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Add the argument PROGRAM and the options every planning command has."""
+    for decorate in (as_json, profile, at, machine, click.argument("program", metavar="PROGRAM", type=type_program)):
+        command = decorate(command)
+    return command
+
+
+def print_json(value: object) -> None:
+    """Print one JSON object on standard output."""
+    import msgspec  # noqa: PLC0415 - `trochia --help` must stay light
+
+    sys.stdout.buffer.write(msgspec.json.format(msgspec.json.encode(value, enc_hook=_plain), indent=2) + b"\n")
+
+
+def _plain(value: Any) -> object:  # noqa: ANN401 - whatever msgspec does not know
+    """Return a numpy scalar or array as plain numbers."""
+    return value.tolist()
