@@ -5,6 +5,7 @@ TrochiaError
 ├─ MachineError           ConfigError · UnitError
 ├─ PlanningError(source)  OutOfTravelError · LimitError · RunInError
 ├─ JobError(source)
+├─ RecordingError
 └─ LinkError              LocalProtocolError · RemoteProtocolError · VersionMismatch · LinkTimeout
 
 What a *machine* does wrong is never an exception; it is a ``Fault``, which is data.
@@ -143,6 +144,12 @@ class JobError(TrochiaError):
     """A drawing or part that cannot be taken."""
 
     code = "job"
+
+
+class RecordingError(TrochiaError):
+    """A recording that cannot be read, written or compared."""
+
+    code = "recording"
 
 
 class LinkError(TrochiaError):
