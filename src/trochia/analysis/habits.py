@@ -1,0 +1,89 @@
+"""Mistakes that are legal programs: cutting with the spindle off, a beam on at rest, a rapid through the part.
+
+In: a program and the machine's spindle and beam.  Out: a warning of each kind, at its first line, with how many more.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from trochia.analysis.problems import Problem, Severity
+from trochia.program import Dwell, MoveKind, Pause, Spindle, ToolChange
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import NDArray
+
+    from trochia.machine.machine import Machine
+    from trochia.program import Program
+
+_X, _Y, _Z = 0, 1, 2
+
+
+def warnings(program: Program, machine: Machine) -> list[Problem]:
+    """Return the warnings a program earns on a machine, in the order of their first lines."""
+    tool = "beam" if machine.beam else "spindle"
+    moves = program.moves
+    moving = _moving(program)
+    rapid = moves["kind"] == MoveKind.RAPID
+    found: list[tuple[str, NDArray[np.bool_], str, str]] = []
+    if machine.beam or machine.spindle:
+        off = moving & ~rapid & (moves["power"] == 0)
+        found.append(("tool-off", off, f"feed with the {tool} off", "Switch it on (M3 S…) before the cut."))
+    if machine.beam:
+        lit = moving & rapid & (moves["power"] > 0)
+        found.append(("beam-in-rapid", lit, "the beam is on in a rapid", "Switch it off (M5) before G0."))
+    if any(axis.name == "Z" for axis in machine.axes):
+        low = _below_lowest_cut(program, moving, rapid)
+        found.append(("rapid-below-cut", low, "a rapid runs below the lowest cut", "Lift Z before travelling."))
+    problems = [
+        _warn(program, code, moves["line"][mask].tolist(), message, hint)
+        for code, mask, message, hint in found
+        if mask.any()
+    ]
+    if machine.beam:
+        lines = list(_lit_rests(program))
+        if lines:
+            problems.append(
+                _warn(program, "beam-at-rest", lines, "the beam is on at a standstill", "Switch it off (M5) first.")
+            )
+    return sorted(problems, key=lambda problem: problem.line)
+
+
+def _moving(program: Program) -> NDArray[np.bool_]:
+    """Return which moves go anywhere (moves,): a full circle does, though it ends where it began."""
+    moves = program.moves
+    return (moves["target"] != program.starts()).any(axis=1) | (moves["kind"] == MoveKind.ARC)
+
+
+def _below_lowest_cut(program: Program, moving: NDArray[np.bool_], rapid: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Return which rapids travel in X or Y deeper than any feed move ever is (moves,)."""
+    start, end = program.starts(), program.moves["target"]
+    depth = np.minimum(start[:, _Z], end[:, _Z])
+    cuts = moving & ~rapid
+    if not cuts.any():
+        return cuts
+    travels = (start[:, [_X, _Y]] != end[:, [_X, _Y]]).any(axis=1)
+    return rapid & travels & (depth < depth[cuts].min())
+
+
+def _lit_rests(program: Program) -> Iterable[int]:
+    """Yield the lines on which the machine rests with the beam on."""
+    lit = False
+    for action in program.actions:
+        if isinstance(action, Spindle):
+            lit = action.direction != 0
+        elif lit and (isinstance(action, ToolChange | Pause) or (isinstance(action, Dwell) and action.seconds > 0)):
+            yield action.line
+
+
+def _warn(program: Program, code: str, lines: list[int], message: str, hint: str) -> Problem:
+    """Return one warning for all lines of a kind."""
+    others = sorted(set(lines[1:]) - {lines[0]})
+    more = f" (and on {len(others)} more line{'s' if len(others) > 1 else ''})" if others else ""
+    return Problem(
+        severity=Severity.WARNING, code=code, file=program.name, line=lines[0], message=message + more, hint=hint
+    )
