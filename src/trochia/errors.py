@@ -99,9 +99,22 @@ class VariableError(ProgramError):
 
 
 class MachineError(TrochiaError):
-    """The machine file is at fault."""
+    """The machine file is at fault; ``key`` is the dotted name of what is wrong, when it is one key."""
 
     code = "machine"
+
+    def __init__(
+        self,
+        message: str,
+        *,
+        key: str | None = None,
+        source: Source | None = None,
+        text: str | None = None,
+        hint: str | None = None,
+    ) -> None:
+        super().__init__(f"{key}: {message}" if key else message, source=source, text=text, hint=hint)
+        self.key = key
+        self.plain = message  # without the key, for whoever knows the key's full name
 
 
 class ConfigError(MachineError):

@@ -6,6 +6,7 @@ decided by the *dimension* asked for, so ``"300 mm/s"`` and ``"18 m/min"`` are t
 
 from __future__ import annotations
 
+import difflib
 import math
 import re
 from fractions import Fraction
@@ -64,7 +65,17 @@ UNITS["force"] = {"N": 1.0, "kN": 1e3}
 UNITS["power"] = {"W": 1.0, "kW": 1e3, "mW": 1e-3}
 UNITS["temperature"] = {"°C": 1.0, "degC": 1.0}
 
-_QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(\S.*?)?\s*\Z")
+#: dimension -> unit -> factor, for what must stay exact: gearing, from the text to the integers of the firmware
+_EXACT: dict[str, dict[str, Fraction]] = {
+    "length": _LENGTH,
+    "angle": {"deg": Fraction(1), "°": Fraction(1), "rev": Fraction(360), "turn": Fraction(360),
+              "arcmin": Fraction(1, 60)},
+}  # fmt: skip
+
+_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+_QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(\S.*?)?\s*\Z")
+# exponents of two digits at most: an exact 1e999999999 would fill the memory
+_FRACTION = re.compile(r"\s*([+-]?(?:\d+\s*/\s*\d+|(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,2})?))\s*(\S.*?)?\s*\Z")
 
 
 def parse(text: object, dimension: str) -> float:
@@ -79,15 +90,93 @@ def parse(text: object, dimension: str) -> float:
     match = _QUANTITY.match(text) if isinstance(text, str) else None
     unit = match.group(2) if match else None
     if match is None or unit is None or unit not in units:
-        raise UnitError(f'expected a {dimension} with its unit, like "10 {next(iter(units))}", not {text!r}',
-                        hint="Units that would do: " + ", ".join(units))  # fmt: skip
+        raise _refusal(text, unit, dimension)
     value = float(match.group(1)) * units[unit]
     if not math.isfinite(value):
         raise UnitError(f"{text!r} is too large a {dimension}")
     return value
 
 
+def parse_fraction(text: object, dimension: str) -> Fraction:
+    """Return exactly what ``text`` says, in the base unit of ``dimension``: ``"0.2 in"`` is 127/25 mm.
+
+    A fraction may be typed as one, ``"25/8 mm"``.
+
+    Raises
+    ------
+    UnitError
+        As :func:`parse`, and for a unit that is no exact multiple of the base (``rad``).
+    """
+    units = _EXACT[dimension]
+    match = _FRACTION.match(text) if isinstance(text, str) else None
+    unit = match.group(2) if match else None
+    number = _fraction(match.group(1)) if match else None
+    if number is None or unit is None or unit not in units:
+        raise _refusal(text, unit, dimension, units)
+    return number * units[unit]
+
+
+def parse_ratio(value: object) -> Fraction:
+    """Return a bare number exactly: ``5``, ``"5/2"``, ``"26:1"``, ``"0.75"``, or a ``Decimal``.
+
+    Raises
+    ------
+    UnitError
+        When it is none.
+    """
+    text = str(value).replace(":", "/") if not isinstance(value, bool) else ""
+    match = _FRACTION.match(text)
+    number = _fraction(match.group(1)) if match and match.group(2) is None else None
+    if number is None:
+        raise UnitError(f'expected a bare number, like 5 or "5/2", not {_shown(value)}')
+    return number
+
+
+def _fraction(text: str) -> Fraction | None:
+    """Return the number, or None where its denominator is zero."""
+    try:
+        return Fraction(text.replace(" ", ""))
+    except ZeroDivisionError:
+        return None
+
+
+def _shown(value: object) -> str:
+    """Return the value as its author wrote it, more or less."""
+    return repr(value) if isinstance(value, str) else str(value)
+
+
+def _refusal(text: object, unit: str | None, dimension: str, units: dict[str, Fraction] | None = None) -> UnitError:
+    """Return the error for a text that is no quantity of this dimension."""
+    wanted = list(units or UNITS[dimension])
+    article = "an" if dimension[0] in "aeiou" else "a"
+    message = f'expected {article} {dimension} with its unit, like "10 {wanted[0]}", not {_shown(text)}'
+    others = [name for name, row in UNITS.items() if unit in row]
+    near = difflib.get_close_matches(unit or "", wanted, 1)
+    if unit and others and dimension not in others:
+        message += f" ({unit} is a unit of {others[0]})"
+    elif unit and near:
+        message += f"; did you mean {near[0]}?"
+    listed = ", ".join(wanted[:9]) + (", …" if len(wanted) > 9 else "")
+    return UnitError(message, hint=f"Units that would do: {listed}")
+
+
 def render(value: float, dimension: str) -> str:
     """Return ``value`` (in the base unit of ``dimension``) as text that :func:`parse` reads back exactly."""
     number = repr(float(value)).removesuffix(".0")
     return f"{number} {next(iter(UNITS[dimension]))}"
+
+
+def render_fraction(value: Fraction, dimension: str | None = None) -> str:
+    """Return an exact value as text that :func:`parse_fraction` (or :func:`parse_ratio`, without a dimension) reads."""
+    number = _decimal(value) or str(value)
+    return f"{number} {next(iter(_EXACT[dimension]))}" if dimension else number
+
+
+def _decimal(value: Fraction) -> str | None:
+    """Return the finite decimal expansion, up to nine places, or None."""
+    scaled = value * 10**9
+    if scaled.denominator != 1:
+        return None
+    whole, rest = divmod(abs(scaled.numerator), 10**9)
+    text = f"{whole}.{rest:09d}".rstrip("0").rstrip(".")
+    return f"-{text}" if value < 0 else text
