@@ -17,6 +17,7 @@ ROOT = CORE.parent
 HEADERS = [
     "host/move.h",
     "host/path.h",
+    "host/gcode.h",
 ]
 FLAGS = ["-std=c11", "-O3", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-ffp-contract=off", "-fno-math-errno"]
 
