@@ -18,6 +18,8 @@ HEADERS = [
     "host/move.h",
     "host/path.h",
     "host/gcode.h",
+    "host/twin.h",
+    "host/contour.h",
 ]
 FLAGS = ["-std=c11", "-O3", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-ffp-contract=off", "-fno-math-errno"]
 
