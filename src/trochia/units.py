@@ -10,8 +10,12 @@ import difflib
 import math
 import re
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 from trochia.errors import UnitError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
 
 _INCH = Fraction(254, 10)
 _MINUTE = Fraction(60)
@@ -128,7 +132,7 @@ def parse_ratio(value: object) -> Fraction:
     match = _FRACTION.match(text)
     number = _fraction(match.group(1)) if match and match.group(2) is None else None
     if number is None:
-        raise UnitError(f'expected a bare number, like 5 or "5/2", not {_shown(value)}')
+        raise UnitError(f'expected a bare number, like 5 or "5/2", not {shown(value)}')
     return number
 
 
@@ -140,22 +144,27 @@ def _fraction(text: str) -> Fraction | None:
         return None
 
 
-def _shown(value: object) -> str:
-    """Return the value as its author wrote it, more or less."""
+def shown(value: object) -> str:
+    """Return a value of a machine file as its author wrote it: texts in quotes."""
     return repr(value) if isinstance(value, str) else str(value)
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str | None:
+    """Return "did you mean …?" with the nearest of the known words, or None where none is near."""
+    near = difflib.get_close_matches(word, list(known), 1)
+    return f"did you mean {near[0]}?" if near else None
 
 
 def _refusal(text: object, unit: str | None, dimension: str, units: dict[str, Fraction] | None = None) -> UnitError:
     """Return the error for a text that is no quantity of this dimension."""
     wanted = list(units or UNITS[dimension])
     article = "an" if dimension[0] in "aeiou" else "a"
-    message = f'expected {article} {dimension} with its unit, like "10 {wanted[0]}", not {_shown(text)}'
+    message = f'expected {article} {dimension} with its unit, like "10 {wanted[0]}", not {shown(text)}'
     others = [name for name, row in UNITS.items() if unit in row]
-    near = difflib.get_close_matches(unit or "", wanted, 1)
     if unit and others and dimension not in others:
         message += f" ({unit} is a unit of {others[0]})"
-    elif unit and near:
-        message += f"; did you mean {near[0]}?"
+    elif unit and (near := did_you_mean(unit, wanted)):
+        message += f"; {near}"
     listed = ", ".join(wanted[:9]) + (", …" if len(wanted) > 9 else "")
     return UnitError(message, hint=f"Units that would do: {listed}")
 

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 
 from trochia.errors import ConfigError
+from trochia.machine.codecs import Quantity, Text
+from trochia.machine.schema import Bound, check_bounds, key
+
+LETTERS = "XYZABCUVW"  #: in the order of every machine's axes and of a program's columns
 
 
 class AxisKind(Enum):
@@ -16,31 +19,62 @@ class AxisKind(Enum):
     ROTARY = "rotary"
 
 
+_POSITION = Quantity("length", motion=True)
+_VELOCITY = Quantity("velocity", motion=True)
+_ACCELERATION = Quantity("acceleration", motion=True)
+_JERK = Quantity("jerk", motion=True)
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Axis:
     """One axis: travel [mm or degree], greatest velocity, acceleration and (if the machine gives one) jerk."""
 
     name: str
-    kind: AxisKind
-    minimum: float
-    maximum: float
-    velocity: float
-    acceleration: float
-    jerk: float | None = None
+    kind: AxisKind = field(
+        metadata=key(
+            Text(("linear", "rotary"), AxisKind), "linear (mm) or rotary (degrees); by the letter if not given"
+        )
+    )
+    minimum: float = field(metadata=key(_POSITION, "lower end of travel, in machine coordinates"))
+    maximum: float = field(metadata=key(_POSITION, "upper end of travel"))
+    velocity: float = field(metadata=key(_VELOCITY, "greatest velocity", Bound.POSITIVE))
+    acceleration: float = field(metadata=key(_ACCELERATION, "greatest acceleration", Bound.POSITIVE))
+    jerk: float | None = field(
+        default=None, metadata=key(_JERK, "greatest jerk; none: acceleration may jump", Bound.POSITIVE)
+    )
 
     def __post_init__(self) -> None:
-        for field in ("velocity", "acceleration", "jerk"):
-            value = getattr(self, field)
-            if value is not None and not (math.isfinite(value) and value > 0):
-                raise ConfigError(f"axes.{self.name}.{field} must be above zero, not {value!r}")
+        check_bounds(self, rotary=self.rotary, path=f"axes.{self.name}")
+        if self.name not in tuple(LETTERS):
+            raise ConfigError(f"an axis is one of the letters {' '.join(LETTERS)}", key=f"axes.{self.name}")
         if not self.minimum < self.maximum:
-            raise ConfigError(f"axes.{self.name}.travel must rise, not {self.minimum!r} to {self.maximum!r}")
+            low, high = (_POSITION.write(value, rotary=self.rotary) for value in (self.minimum, self.maximum))
+            raise ConfigError(f"must lie above minimum ({low}), not at {high}", key=f"axes.{self.name}.maximum")
+
+    @property
+    def rotary(self) -> bool:
+        """Whether its unit is the degree."""
+        return self.kind is AxisKind.ROTARY
+
+    @property
+    def unit(self) -> str:
+        """Unit of its position: mm or deg."""
+        return "deg" if self.rotary else "mm"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PathLimits:
     """Caps on the vector along the path [mm/s, mm/s², mm/s³]; what is not given does not bind."""
 
-    velocity: float | None = None
-    acceleration: float | None = None
-    jerk: float | None = None
+    velocity: float | None = field(
+        default=None, metadata=key(Quantity("velocity"), "greatest speed along the path", Bound.POSITIVE)
+    )
+    acceleration: float | None = field(
+        default=None, metadata=key(Quantity("acceleration"), "greatest acceleration of the vector", Bound.POSITIVE)
+    )
+    jerk: float | None = field(
+        default=None, metadata=key(Quantity("jerk"), "greatest jerk of the vector", Bound.POSITIVE)
+    )
+
+    def __post_init__(self) -> None:
+        check_bounds(self, path="path")

@@ -5,22 +5,35 @@ The crossing from axis space to tick space: ``steps_per_unit`` and ``counts_per_
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, ClassVar
+
+from trochia.machine.codecs import Flag, Quantity, Ratio, Text, Whole
+from trochia.machine.schema import Bound, Record, Variant, check_bounds, key
+from trochia.machine.transmissions import TRANSMISSIONS
 
 if TYPE_CHECKING:
     from fractions import Fraction
 
     from trochia.machine.transmissions import Transmission
 
+_MODEL = key(Text(), "maker's name for it, for people")
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stepper:
     """A stepper with its driver: full steps a turn, micro-steps a step."""
 
-    full_steps: int = 200
-    microsteps: int = 1
-    model: str | None = None
+    kind: ClassVar[str] = "stepper"
+
+    full_steps: int = field(default=200, metadata=key(Whole(), "full steps a turn (1.8 degrees: 200)", Bound.POSITIVE))
+    microsteps: int = field(
+        default=1, metadata=key(Whole(), "pulses a full step, as set at the driver", Bound.POSITIVE)
+    )
+    model: str | None = field(default=None, metadata=_MODEL)
+
+    def __post_init__(self) -> None:
+        check_bounds(self)
 
     @property
     def steps_per_turn(self) -> int:
@@ -32,29 +45,48 @@ class Stepper:
 class Servo:
     """A servo with its amplifier; the loop's parameters come with the servo rooms."""
 
-    model: str | None = None
+    kind: ClassVar[str] = "servo"
+
+    model: str | None = field(default=None, metadata=_MODEL)
 
 
 Motor = Stepper | Servo
-MOTORS: dict[str, type[Motor]] = {"stepper": Stepper, "servo": Servo}
+MOTORS: dict[str, type[Motor]] = {cls.kind: cls for cls in (Stepper, Servo)}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Encoder:
     """Counts a turn (after quadrature), on the motor's shaft or on the load (then counts a mm or degree)."""
 
-    counts: Fraction
-    on_load: bool = False
+    counts: Fraction = field(
+        metadata=key(
+            Ratio(), "counts a turn of the shaft, all edges counted; on the load: a mm or degree", Bound.NOT_ZERO
+        )
+    )
+    on_load: bool = field(default=False, metadata=key(Flag(), "a scale on the load instead of the motor's shaft"))
+    index: bool = field(default=False, metadata=key(Flag(), "gives an index pulse once a turn"))
+
+    def __post_init__(self) -> None:
+        check_bounds(self)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PulseTiming:
     """What a driver's step and direction inputs ask: step high, step low, direction before and after a step [s]."""
 
-    length: float = 1e-6
-    space: float = 1e-6
-    setup: float = 1e-6
-    hold: float = 1e-6
+    length: float = field(default=1e-6, metadata=key(Quantity("time"), "step input active", Bound.POSITIVE))
+    space: float = field(
+        default=1e-6, metadata=key(Quantity("time"), "step input at rest between steps", Bound.POSITIVE)
+    )
+    setup: float = field(
+        default=1e-6, metadata=key(Quantity("time"), "direction stable before a step", Bound.NOT_NEGATIVE)
+    )
+    hold: float = field(
+        default=1e-6, metadata=key(Quantity("time"), "direction stable after a step", Bound.NOT_NEGATIVE)
+    )
+
+    def __post_init__(self) -> None:
+        check_bounds(self)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,22 +97,37 @@ class Joint:
     ----------
     backlash
         Lost motion on reversal [mm or degree].
-    velocity, acceleration
-        Limits of the joint itself, beside those of the axes [mm/s, mm/s²].
+    velocity, acceleration, jerk
+        Limits of the joint itself, beside those of the axes [mm/s, mm/s², mm/s³, or degrees].
     pulse_rate
         Greatest step rate of its driver [1/s].
     """
 
     name: str
-    motor: Motor
-    transmission: Transmission
-    encoder: Encoder | None = None
-    backlash: float = 0.0
-    velocity: float | None = None
-    acceleration: float | None = None
-    jerk: float | None = None
-    pulse_rate: float | None = None
-    pulses: PulseTiming = PulseTiming()
+    motor: Motor = field(metadata=key(Variant(MOTORS), "the motor and its driver"))
+    transmission: Transmission = field(metadata=key(Variant(TRANSMISSIONS), "from a turn of the motor to travel"))
+    encoder: Encoder | None = field(default=None, metadata=key(Record(Encoder), "what measures the position"))
+    backlash: float = field(
+        default=0.0, metadata=key(Quantity("length", motion=True), "lost motion on reversal", Bound.NOT_NEGATIVE)
+    )
+    velocity: float | None = field(
+        default=None, metadata=key(Quantity("velocity", motion=True), "limit of the joint itself", Bound.POSITIVE)
+    )
+    acceleration: float | None = field(
+        default=None, metadata=key(Quantity("acceleration", motion=True), "limit of the joint itself", Bound.POSITIVE)
+    )
+    jerk: float | None = field(
+        default=None, metadata=key(Quantity("jerk", motion=True), "limit of the joint itself", Bound.POSITIVE)
+    )
+    pulse_rate: float | None = field(
+        default=None, metadata=key(Quantity("frequency"), "greatest step rate of the driver", Bound.POSITIVE)
+    )
+    pulses: PulseTiming = field(
+        default=PulseTiming(), metadata=key(Record(PulseTiming), "what the driver's inputs ask for")
+    )
+
+    def __post_init__(self) -> None:
+        check_bounds(self, path=f"joints.{self.name}")
 
     @property
     def steps_per_unit(self) -> Fraction | None:

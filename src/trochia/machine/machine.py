@@ -5,11 +5,20 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from trochia.machine.axes import LETTERS, PathLimits
+from trochia.machine.checks import check
+from trochia.machine.codecs import Quantity, Text
+from trochia.machine.io import Beam, Spindle
+from trochia.machine.schema import Bound, Record, check_bounds, key
+
 if TYPE_CHECKING:
-    from trochia.machine.axes import Axis, PathLimits
-    from trochia.machine.io import Beam, Channel, Spindle
+    from trochia.machine.axes import Axis
+    from trochia.machine.io import Channel
     from trochia.machine.joints import Joint
     from trochia.machine.kinematics import Kinematics
+
+#: velocity profiles a machine may ask for
+PROFILES = ("trapezoid", "s-curve", "torque")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -24,22 +33,45 @@ class Machine:
         Period of set-points and recordings [s].
     tool_change_time
         What a tool change costs [s].
+    profile
+        Velocity profile the machine asks for, a name of :data:`PROFILES`; None leaves it to the planner.
+
+    Raises
+    ------
+    ConfigError
+        At construction, when the parts do not fit together; see :mod:`trochia.machine.checks`.
     """
 
-    name: str
-    description: str
+    name: str = field(metadata=key(Text(), "short name of the machine"))
+    description: str = field(default="", metadata=key(Text(), "one line for people"))
     axes: tuple[Axis, ...]
     joints: tuple[Joint, ...]
     kinematics: Kinematics
-    path: PathLimits
-    path_tolerance: float = 0.01
-    servo_period: float = 0.001
-    tool_change_time: float = 0.0
-    spindle: Spindle | None = None
-    beam: Beam | None = None
+    path: PathLimits = field(
+        default=PathLimits(), metadata=key(Record(PathLimits), "caps on the vector along the path")
+    )
+    path_tolerance: float = field(
+        default=0.01,
+        metadata=key(Quantity("length"), "greatest distance to the programmed path without G64 P", Bound.POSITIVE),
+    )
+    servo_period: float = field(
+        default=0.001, metadata=key(Quantity("time"), "period of set-points and recordings", Bound.POSITIVE)
+    )
+    tool_change_time: float = field(
+        default=0.0, metadata=key(Quantity("time"), "what a tool change costs", Bound.NOT_NEGATIVE)
+    )
+    profile: str | None = field(
+        default=None, metadata=key(Text(PROFILES), "velocity profile; the planner's own choice if not given")
+    )
+    spindle: Spindle | None = field(default=None, metadata=key(Record(Spindle), "the spindle"))
+    beam: Beam | None = field(default=None, metadata=key(Record(Beam), "a laser or the like"))
     io: tuple[Channel, ...] = field(default=())
+
+    def __post_init__(self) -> None:
+        check_bounds(self)
+        check(self)
 
     @property
     def columns(self) -> tuple[int, ...]:
         """Column of each axis among the nine letters."""
-        return tuple("XYZABCUVW".index(axis.name) for axis in self.axes)
+        return tuple(LETTERS.index(axis.name) for axis in self.axes)
