@@ -1,7 +1,13 @@
 """What a program *is*: canonical moves in columns, sparse actions, each with its source line.
 
-Machine coordinates, mm, degrees and s; after offsets, rotation, tool length and cutter compensation.
+Machine coordinates, mm, degrees and s; after offsets, rotation, tool length and cutter compensation.  ``MOVE`` and
+``Program`` are loaded on first use (PEP 562): they need numpy, and reading a program as text does not.
 """
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 from trochia.program.actions import (
     Action,
@@ -13,12 +19,17 @@ from trochia.program.actions import (
     Spindle,
     ToolChange,
 )
-from trochia.program.moves import AXES, MOVE, MoveKind, PathMode, Plane, TimeLaw
-from trochia.program.program import Program
+from trochia.program.modes import AXES, MoveKind, PathMode, Plane, TimeLaw
+from trochia.program.work import SYSTEMS, WorkState
+
+if TYPE_CHECKING:
+    from trochia.program.moves import MOVE
+    from trochia.program.program import Program
 
 __all__ = [
     "AXES",
     "MOVE",
+    "SYSTEMS",
     "Action",
     "Coolant",
     "Dwell",
@@ -32,4 +43,14 @@ __all__ = [
     "Spindle",
     "TimeLaw",
     "ToolChange",
+    "WorkState",
 ]
+
+_LATE = {"MOVE": "trochia.program.moves", "Program": "trochia.program.program"}
+
+
+def __getattr__(name: str) -> Any:  # noqa: ANN401 - the types are those imported above
+    """Return ``MOVE`` or ``Program``."""
+    if name in _LATE:
+        return getattr(import_module(_LATE[name]), name)
+    raise AttributeError(f"module 'trochia.program' has no attribute {name!r}")
