@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from trochia.errors import ConfigError, LimitError
 from trochia.kernels.layout import ffi, lib, pointer
 
 if TYPE_CHECKING:
@@ -39,6 +40,8 @@ class TwinJoint:
     ----------
     command
         Commanded travel at the start [mm or degree].
+    name
+        What errors call it.
     steps_per_unit
         Of a stepper: it stands on the last step passed [1/mm or 1/degree].
     counts_per_unit
@@ -53,22 +56,26 @@ class TwinJoint:
 
     Raises
     ------
-    ValueError
-        For a parameter out of range.
+    ConfigError
+        When the encoder's gearing to the motor cannot be counted in 64 bits, or backlash is below zero.
+    LimitError
+        When the start cannot be counted.
     """
 
     def __init__(
         self,
         command: float,
         *,
+        name: str = "joint",
         steps_per_unit: Fraction | None = None,
         counts_per_unit: Fraction | None = None,
         on_load: bool = False,
         backlash: float = 0.0,
         slack: float = 0.0,
     ) -> None:
-        if not (0 <= backlash < np.inf and -1 <= slack <= 1):
-            raise ValueError(f"backlash is not below zero and slack within -1 to 1, not {backlash!r} and {slack!r}")
+        if not 0 <= backlash < np.inf:
+            raise ConfigError(f"joints.{name}.backlash must not be below zero, not {backlash!r}")
+        self.name = name
         state = ffi.new("trochia_twin_joint *")
         self._state = state
         self.counted = steps_per_unit is not None or counts_per_unit is not None
@@ -89,7 +96,7 @@ class TwinJoint:
             return
         gearing = counts / per_unit
         if abs(gearing.numerator) >= LIMIT or gearing.denominator >= LIMIT:
-            raise ValueError(f"an encoder's counts a motor position must have terms below 2**31, not {gearing}")
+            raise ConfigError(f"joints.{self.name}.encoder: counts a step must be a fraction of terms below 2**31")
         self._state.encoder = lib.TROCHIA_TWIN_ON_LOAD if on_load else lib.TROCHIA_TWIN_ON_MOTOR
         self._state.counts_per_unit = float(counts)
         self._state.numerator, self._state.denominator = gearing.numerator, gearing.denominator
@@ -99,14 +106,14 @@ class TwinJoint:
         scale = max(abs(self._state.per_unit), abs(self._state.counts_per_unit), 1.0)
         greatest = float(np.abs(command).max())  # NaN comes through and is refused
         if not greatest * scale < LIMIT:
-            raise ValueError(f"a joint counts to less than 2**31; a command of {greatest!r} is beyond it")
+            raise LimitError(f"joint {self.name} counts to less than 2**31; a command of {greatest!r} is beyond it")
 
     def run(self, command: NDArray[np.float64]) -> TwinBlock:
         """Follow a block of commands (samples,) [mm or degree].
 
         Raises
         ------
-        ValueError
+        LimitError
             When a command is no number or beyond 2**31 steps or counts.
         """
         command = np.ascontiguousarray(command, np.float64)

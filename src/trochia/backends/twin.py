@@ -1,0 +1,144 @@
+"""The digital twin, first level: ideal motors, transmissions with backlash, encoders, on a clock of its own.
+
+In: a motion and a machine.  Out: blocks of three independent signals, the commanded position, what the encoders count,
+and where the axes really are; ``docs/reference/recording.md`` lists the channels.
+
+``axes --kinematics--> joint command --motor--> motor --backlash--> load --pseudo-inverse--> axes``
+
+An ideal stepper stands on the last step passed, an ideal servo on the nearest count of its encoder (on the load as on
+the motor: no loop is closed here); neither is late or loses anything, so what is left is resolution and lost motion.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from trochia.errors import ConfigError
+from trochia.kernels.twin import TwinJoint
+from trochia.machine.axes import AxisKind
+from trochia.recorder import Channel, Header
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from numpy.typing import NDArray
+
+    from trochia.backends.protocol import Motion
+    from trochia.kernels.twin import TwinBlock
+    from trochia.machine.joints import Joint
+    from trochia.machine.machine import Machine
+
+BLOCK = 65_536  #: samples at a time: a few MB, and some milliseconds of work a call
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Twin:
+    """A machine of ideal joints.
+
+    Attributes
+    ----------
+    machine
+        What is to be moved.
+    period
+        Time between samples [s]; the machine's servo period where None.
+    slack
+        Where every load lies in its backlash at the start, -1 to 1: 0 centred, -1 as after moving forwards.
+    """
+
+    kind: ClassVar[str] = "twin"
+    machine: Machine
+    period: float | None = None
+    slack: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.tick) and self.tick > 0):
+            raise ConfigError(f"a twin's period must be above zero, not {self.tick!r} s")
+        if not -1 <= self.slack <= 1:
+            raise ConfigError(f"a twin's slack lies within -1 to 1, not {self.slack!r}")
+
+    @property
+    def tick(self) -> float:
+        """Time between samples [s]."""
+        return self.machine.servo_period if self.period is None else self.period
+
+    def header(self, motion: Motion, *, program: str = "") -> Header:
+        """Return the header of the recording that :meth:`run` gives the samples of."""
+        return Header(
+            period=self.tick,
+            duration=motion.duration,
+            machine=self.machine.name,
+            program=program,
+            origin=f"twin of ideal joints, slack {self.slack:g}",
+            channels=tuple(self._channels()),
+        )
+
+    def run(self, motion: Motion) -> Iterator[Mapping[str, NDArray[Any]]]:
+        """Yield the motion's samples at 0, 1, 2, … periods, up to the first at or after its end (there: the end)."""
+        matrix = self.machine.kinematics.matrix
+        inverse = np.linalg.pinv(matrix)
+        start = motion.position(np.zeros(1))[0] @ matrix.T
+        joints = [self._joint(joint, at) for joint, at in zip(self.machine.joints, start, strict=True)]
+        # a millionth of a period: 2.1 s of 0.001 s periods are 2100, although the quotient is a little more
+        samples = math.ceil(motion.duration / self.tick - 1e-6) + 1
+        for first in range(0, samples, BLOCK):
+            t = np.minimum(self.tick * np.arange(first, min(first + BLOCK, samples)), motion.duration)
+            commanded = motion.position(t)
+            wanted = commanded @ matrix.T
+            done = [joint.run(wanted[:, i]) for i, joint in enumerate(joints)]
+            actual = np.stack([block.load for block in done], axis=1) @ inverse.T
+            yield {
+                **self._axis_samples(commanded, actual),
+                **self._joint_samples(done),
+                "path.speed": motion.path_speed(t),
+                "path.line": np.asarray(motion.line_at(t), np.uint32),
+            }
+
+    def _joint(self, joint: Joint, command: float) -> TwinJoint:
+        return TwinJoint(
+            command,
+            name=joint.name,
+            steps_per_unit=joint.steps_per_unit,
+            counts_per_unit=joint.counts_per_unit,
+            on_load=joint.encoder is not None and joint.encoder.on_load,
+            backlash=joint.backlash,
+            slack=self.slack,
+        )
+
+    def _channels(self) -> Iterator[Channel]:
+        """Yield every channel, in the order of the file."""
+        units = ["mm" if axis.kind is AxisKind.LINEAR else "degree" for axis in self.machine.axes]
+        for quantity in ("commanded", "actual"):
+            for axis, unit in zip(self.machine.axes, units, strict=True):
+                yield Channel(name=f"{axis.name}.{quantity}", unit=unit)
+        for joint, row in zip(self.machine.joints, self.machine.kinematics.matrix, strict=True):
+            unit = units[int(np.argmax(np.abs(row)))]
+            if joint.steps_per_unit is not None:
+                yield Channel(name=f"joint.{joint.name}.steps", unit="step", dtype="<i8")
+            yield Channel(name=f"joint.{joint.name}.motor", unit=unit)
+            if joint.encoder is not None:
+                yield Channel(name=f"joint.{joint.name}.counts", unit="count", dtype="<i8")
+            yield Channel(name=f"joint.{joint.name}.actual", unit=unit)
+        yield Channel(name="path.speed", unit="mm/s")
+        yield Channel(name="path.line", dtype="<u4")
+
+    def _axis_samples(self, commanded: NDArray[np.float64], actual: NDArray[np.float64]) -> dict[str, NDArray[Any]]:
+        samples: dict[str, NDArray[Any]] = {}
+        for i, axis in enumerate(self.machine.axes):
+            samples[f"{axis.name}.commanded"] = commanded[:, i]
+            samples[f"{axis.name}.actual"] = actual[:, i]
+        return samples
+
+    def _joint_samples(self, done: list[TwinBlock]) -> dict[str, NDArray[Any]]:
+        samples: dict[str, NDArray[Any]] = {}
+        for joint, block in zip(self.machine.joints, done, strict=True):
+            name = f"joint.{joint.name}"
+            samples |= {f"{name}.motor": block.motor, f"{name}.actual": block.load}
+            if joint.steps_per_unit is not None and block.position is not None:
+                samples[f"{name}.steps"] = block.position
+            if block.counts is not None:
+                samples[f"{name}.counts"] = block.counts
+        return samples
