@@ -6,7 +6,7 @@
 #include <string.h>
 
 enum {
-    LONGEST_LINE = 254, /* bytes before '\n'; longer ones are the interpreter's to judge */
+    LONGEST_LINE = 252, /* bytes before the line end; longer ones are errors, which the interpreter reports */
     ROWS_PER_LINE = 3,  /* comment, feed, move */
     AXIS_BITS = 0x1ff,
     CIRCLE_BITS = 0x1e00, /* I J K R */

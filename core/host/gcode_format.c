@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { ROOM = 512 }; /* bytes: more than the longest line, a comment of 254 bytes or 9 numbers of 18 */
+enum { ROOM = 512 }; /* bytes: more than the longest line, a comment of 250 bytes or 9 numbers of 18 */
 
 static const double LARGEST = 1e11; /* below it 1e4 x is below 2^53 */
 static const uint8_t FIRST[3] = {0, 1, 2}, SECOND[3] = {1, 2, 0}, NORMAL[3] = {2, 0, 1};
