@@ -15,71 +15,87 @@ from typing import TYPE_CHECKING
 from trochia.errors import UnitError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
 _INCH = Fraction(254, 10)
 _MINUTE = Fraction(60)
 
+Factor = Fraction | float  #: exact wherever a unit is a rational multiple of its base, so that 6 in is 152.4 mm
+
 #: dimension -> unit -> factor to the base unit (the first unit of each row is the base)
-UNITS: dict[str, dict[str, float]] = {}
+_FACTORS: dict[str, dict[str, Factor]] = {}
 
 
 _LENGTH: dict[str, Fraction] = {
     "mm": Fraction(1), "m": Fraction(1000), "cm": Fraction(10), "um": Fraction(1, 1000), "µm": Fraction(1, 1000),
     "nm": Fraction(1, 10**6), "in": _INCH, "mil": _INCH / 1000,
 }  # fmt: skip
-_ANGLE: dict[str, float] = {"deg": 1.0, "°": 1.0, "rad": 180 / math.pi, "rev": 360.0, "turn": 360.0, "arcmin": 1 / 60}
+_ANGLE: dict[str, Factor] = {
+    "deg": Fraction(1), "°": Fraction(1), "rad": 180 / math.pi, "rev": Fraction(360), "turn": Fraction(360),
+    "arcmin": Fraction(1, 60),
+}  # fmt: skip
 _TIME: dict[str, Fraction] = {
     "s": Fraction(1), "ms": Fraction(1, 1000), "us": Fraction(1, 10**6), "µs": Fraction(1, 10**6),
     "ns": Fraction(1, 10**9), "min": _MINUTE, "h": _MINUTE**2,
 }  # fmt: skip
 
 
-def _per_time(lengths: dict[str, Fraction] | dict[str, float], order: int) -> dict[str, float]:
+def _per_time(lengths: Mapping[str, Factor], order: int) -> dict[str, Factor]:
     """Return the units ``length/time**order``; a base unit stays first."""
     tails = ["/s", "/min", "/h"] if order == 1 else [f"/s{'²³'[order - 2]}", f"/s^{order}", f"/s{order}"]
     seconds = [1, 60, 3600] if order == 1 else [1, 1, 1]
     return {
-        f"{unit}{tail}": float(factor) / second
+        f"{unit}{tail}": factor / second
         for unit, factor in lengths.items()
         for tail, second in zip(tails, seconds, strict=True)
     }
 
 
-UNITS["length"] = {unit: float(factor) for unit, factor in _LENGTH.items()}
-UNITS["angle"] = dict(_ANGLE)
-UNITS["time"] = {unit: float(factor) for unit, factor in _TIME.items()}
-UNITS["velocity"] = _per_time(_LENGTH, 1)
-UNITS["acceleration"] = _per_time(_LENGTH, 2)
-UNITS["jerk"] = _per_time(_LENGTH, 3)
-UNITS["angular velocity"] = _per_time(_ANGLE, 1)
-UNITS["angular acceleration"] = _per_time(_ANGLE, 2)
-UNITS["angular jerk"] = _per_time(_ANGLE, 3)
-UNITS["rotation speed"] = {"rpm": 1.0, "rev/min": 1.0, "r/min": 1.0, "rev/s": 60.0, "Hz": 60.0}
-UNITS["length per turn"] = {f"{unit}/rev": float(factor) for unit, factor in _LENGTH.items()}
-UNITS["frequency"] = {"Hz": 1.0, "kHz": 1e3, "MHz": 1e6}
-UNITS["current"] = {"A": 1.0, "mA": 1e-3}
-UNITS["voltage"] = {"V": 1.0, "mV": 1e-3, "kV": 1e3}
-UNITS["resistance"] = {"ohm": 1.0, "Ω": 1.0, "mohm": 1e-3, "mΩ": 1e-3}
-UNITS["inductance"] = {"H": 1.0, "mH": 1e-3, "uH": 1e-6, "µH": 1e-6}
-UNITS["torque"] = {"N·m": 1.0, "Nm": 1.0, "N·cm": 1e-2, "Ncm": 1e-2, "mN·m": 1e-3, "mNm": 1e-3, "oz·in": 7.0615518e-3}
-UNITS["inertia"] = {"kg·m²": 1.0, "kg·m^2": 1.0, "kgm2": 1.0, "kg·cm²": 1e-4, "g·cm²": 1e-7, "gcm2": 1e-7}
-UNITS["mass"] = {"kg": 1.0, "g": 1e-3, "t": 1e3}
-UNITS["force"] = {"N": 1.0, "kN": 1e3}
-UNITS["power"] = {"W": 1.0, "kW": 1e3, "mW": 1e-3}
-UNITS["temperature"] = {"°C": 1.0, "degC": 1.0}
+_FACTORS["length"] = {**_LENGTH}
+_FACTORS["angle"] = {**_ANGLE}
+_FACTORS["time"] = {**_TIME}
+_FACTORS["velocity"] = _per_time(_LENGTH, 1)
+_FACTORS["acceleration"] = _per_time(_LENGTH, 2)
+_FACTORS["jerk"] = _per_time(_LENGTH, 3)
+_FACTORS["angular velocity"] = _per_time(_ANGLE, 1)
+_FACTORS["angular acceleration"] = _per_time(_ANGLE, 2)
+_FACTORS["angular jerk"] = _per_time(_ANGLE, 3)
+_FACTORS["rotation speed"] = {"rpm": 1.0, "rev/min": 1.0, "r/min": 1.0, "rev/s": 60.0, "Hz": 60.0}
+_FACTORS["length per turn"] = {f"{unit}/rev": factor for unit, factor in _LENGTH.items()}
+_FACTORS["frequency"] = {"Hz": 1.0, "kHz": 1e3, "MHz": 1e6}
+_FACTORS["current"] = {"A": 1.0, "mA": 1e-3}
+_FACTORS["voltage"] = {"V": 1.0, "mV": 1e-3, "kV": 1e3}
+_FACTORS["resistance"] = {"ohm": 1.0, "Ω": 1.0, "mohm": 1e-3, "mΩ": 1e-3}
+_FACTORS["inductance"] = {"H": 1.0, "mH": 1e-3, "uH": 1e-6, "µH": 1e-6}
+_FACTORS["torque"] = {
+    "N·m": 1.0,
+    "Nm": 1.0,
+    "N·cm": 1e-2,
+    "Ncm": 1e-2,
+    "mN·m": 1e-3,
+    "mNm": 1e-3,
+    "oz·in": 7.0615518e-3,
+}
+_FACTORS["inertia"] = {"kg·m²": 1.0, "kg·m^2": 1.0, "kgm2": 1.0, "kg·cm²": 1e-4, "g·cm²": 1e-7, "gcm2": 1e-7}
+_FACTORS["mass"] = {"kg": 1.0, "g": 1e-3, "t": 1e3}
+_FACTORS["force"] = {"N": 1.0, "kN": 1e3}
+_FACTORS["power"] = {"W": 1.0, "kW": 1e3, "mW": 1e-3}
+_FACTORS["temperature"] = {"°C": 1.0, "degC": 1.0}
 
-#: dimension -> unit -> factor, for what must stay exact: gearing, from the text to the integers of the firmware
+#: dimension -> unit -> factor, as floats
+UNITS: dict[str, dict[str, float]] = {
+    dimension: {unit: float(factor) for unit, factor in row.items()} for dimension, row in _FACTORS.items()
+}
+#: the same for what must stay exact: gearing, from the text to the integers of the firmware
 _EXACT: dict[str, dict[str, Fraction]] = {
-    "length": _LENGTH,
-    "angle": {"deg": Fraction(1), "°": Fraction(1), "rev": Fraction(360), "turn": Fraction(360),
-              "arcmin": Fraction(1, 60)},
-}  # fmt: skip
+    dimension: {unit: factor for unit, factor in _FACTORS[dimension].items() if isinstance(factor, Fraction)}
+    for dimension in ("length", "angle")
+}
 
-_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+# exponents of three digits at most: an exact 1e999999999 would fill the memory
+_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?"
 _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(\S.*?)?\s*\Z")
-# exponents of two digits at most: an exact 1e999999999 would fill the memory
-_FRACTION = re.compile(r"\s*([+-]?(?:\d+\s*/\s*\d+|(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,2})?))\s*(\S.*?)?\s*\Z")
+_FRACTION = re.compile(rf"\s*([+-]?\d+\s*/\s*\d+|{_NUMBER})\s*(\S.*?)?\s*\Z")
 
 
 def parse(text: object, dimension: str) -> float:
@@ -90,12 +106,18 @@ def parse(text: object, dimension: str) -> float:
     UnitError
         When the text is no number with a unit of that dimension; it names the units that would do.
     """
-    units = UNITS[dimension]
+    units = _FACTORS[dimension]
     match = _QUANTITY.match(text) if isinstance(text, str) else None
     unit = match.group(2) if match else None
     if match is None or unit is None or unit not in units:
         raise _refusal(text, unit, dimension)
-    value = float(match.group(1)) * units[unit]
+    factor = units[unit]
+    try:
+        if isinstance(factor, Fraction):
+            return float(Fraction(match.group(1)) * factor)  # rounded once
+        value = float(match.group(1)) * factor
+    except OverflowError:
+        value = math.inf
     if not math.isfinite(value):
         raise UnitError(f"{text!r} is too large a {dimension}")
     return value
@@ -155,7 +177,7 @@ def did_you_mean(word: str, known: Iterable[str]) -> str | None:
     return f"did you mean {near[0]}?" if near else None
 
 
-def _refusal(text: object, unit: str | None, dimension: str, units: dict[str, Fraction] | None = None) -> UnitError:
+def _refusal(text: object, unit: str | None, dimension: str, units: Mapping[str, Fraction] | None = None) -> UnitError:
     """Return the error for a text that is no quantity of this dimension."""
     wanted = list(units or UNITS[dimension])
     article = "an" if dimension[0] in "aeiou" else "a"

@@ -109,7 +109,7 @@ class Ratio:
     def example(self, *, rotary: bool) -> str:
         """Return a usual one."""
         del rotary
-        return '"5/2"'
+        return "4096"
 
 
 @dataclass(frozen=True, slots=True)
@@ -201,9 +201,9 @@ class Text:
         return quote(value.value if isinstance(value, Enum) else value)
 
     def example(self, *, rotary: bool) -> str:
-        """Return the choices, or an empty text."""
+        """Return the first choice."""
         del rotary
-        return " | ".join(quote(choice) for choice in self.choices) or '"…"'
+        return quote(self.choices[0] if self.choices else "…")
 
 
 def quote(text: str) -> str:
