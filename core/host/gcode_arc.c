@@ -29,7 +29,7 @@ static int centre_form(const trochia_modal *modal, const trochia_plain_line *lin
            (difference <= modal->spiral || difference <= modal->spiral_share * greater);
 }
 
-/* Of the two circles of radius |R| through both ends, R > 0 takes the arc of at most half a turn.  A chord within 1e-7
+/* Of the two circles of radius |R| through both ends, R > 0 takes the arc of at most half a turn.  A chord within 1e-12
  * of the diameter counts as the diameter. */
 static int radius_form(const trochia_modal *modal, const trochia_plain_line *line, uint8_t motion, trochia_move *row) {
     const unsigned first = FIRST[modal->plane], second = SECOND[modal->plane];
@@ -39,7 +39,7 @@ static int radius_form(const trochia_modal *modal, const trochia_plain_line *lin
     if (half == 0.0 || radius == 0.0 || half - radius > modal->least_radius) {
         return 0;
     }
-    const double height = half / radius > 1.0 - 1e-7 ? 0.0 : sqrt(radius * radius - half * half);
+    const double height = half / radius > 1.0 - 1e-12 ? 0.0 : sqrt(radius * radius - half * half);
     const int right = (motion == 2) == (line->word[RADIUS_SLOT] > 0.0);
     const double share = (right ? height : -height) / (2.0 * half);
     row->centre[0] = (x + row->target[first]) / 2.0 + share * along_y;
