@@ -69,8 +69,8 @@ def columns(path: Path) -> int:
 
     text = path.read_bytes()
     reader, count = PlainReader(text), 0
-    reader.modal.axes, reader.modal.feed, reader.modal.spiral = 0x3F, 1.0, 0.0283
-    reader.modal.spiral_most, reader.modal.spiral_share, reader.modal.least_radius = 2.83, 0.001, 0.00283
+    reader.modal.axes, reader.modal.feed, reader.modal.spiral = 0x3F, 1.0, 0.02
+    reader.modal.spiral_most, reader.modal.spiral_share, reader.modal.least_radius = 2.0, 0.001, 0.00127
     while reader.modal.offset < len(text):
         count += len(reader.read())
         if reader.modal.stop == STOP_LINE:  # a line for the interpreter: skipped here

@@ -16,8 +16,9 @@ RAPID, FEED, ARC = range(3)
 def reader_of(text: bytes, capacity: int = 64, **modes: object) -> PlainReader:
     """Return a reader at the start of a text, in G0, feed 100, XYZABC allowed, with the reference's arc tolerances."""
     reader = PlainReader(text, capacity)
-    given_modes = {"line": 1, "axes": 0x3F, "motion": 0, "feed": 100.0, "least_radius": 0.00283, "spiral": 0.0283}
-    for name, value in (given_modes | {"spiral_share": 0.001, "spiral_most": 2.83} | modes).items():
+    start = {"line": 1, "axes": 0x3F, "motion": 0, "feed": 100.0}
+    tolerances = {"least_radius": 0.00127, "spiral": 0.02 * 2**0.5, "spiral_share": 0.001, "spiral_most": 2 * 2**0.5}
+    for name, value in (start | tolerances | modes).items():
         setattr(reader.modal, name, value)
     return reader
 
