@@ -1,6 +1,7 @@
 #include "host/contour.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 #define REACH 4.0 /* least search along the path, in distances of the point from where it should be */
 #define NEWTON 6  /* the chord's foot is near; squares of an error of at most half a sample */
@@ -58,14 +59,18 @@ static foot walk(const track *t, int64_t at, int64_t step, const double *point, 
     return best;
 }
 
-/* Hermite cubic over a chord, tangents by central differences of its neighbours: p = c0 + u(c1 + u(c2 + u c3)). */
+/* Hermite cubic over a chord, tangents by central differences of its neighbours: p = c0 + u(c1 + u(c2 + u c3)).  Where
+ * the path ends a parabola goes on (from rest, that is constant acceleration). */
 static void cubic_over(const track *t, int64_t chord, double c[4][DIMS]) {
     const int64_t dims = t->dims;
     const double *from = t->path + chord * dims, *to = from + dims;
     for (int64_t k = 0; k < dims; k++) {
         const double d = to[k] - from[k];
-        const double before = chord > 0 ? from[k] - from[k - dims] : d;
-        const double after = chord + 2 < t->points ? to[k + dims] - to[k] : d;
+        const bool first = chord == 0, last = chord + 2 == t->points;
+        double before = first ? d : from[k] - from[k - dims];
+        double after = last ? d : to[k + dims] - to[k];
+        before = first ? 2 * d - after : before;
+        after = last ? 2 * d - before : after;
         const double m = 0.5 * (before + d), n = 0.5 * (d + after);
         c[0][k] = from[k];
         c[1][k] = m;
@@ -89,6 +94,7 @@ static double measure(double c[4][DIMS], int64_t dims, const double *point, doub
     return square;
 }
 
+/* Squared distance from the cubic over the nearest chord. */
 static double refined(const track *t, foot best, const double *point) {
     double c[4][DIMS], slope, bend, u = best.u;
     cubic_over(t, best.chord, c);
@@ -97,7 +103,7 @@ static double refined(const track *t, foot best, const double *point) {
         u = fmin(fmax(u - slope / bend, 0), 1);
         least = fmin(least, measure(c, t->dims, point, u, &slope, &bend));
     }
-    return sqrt(least);
+    return least;
 }
 
 void trochia_contour(const double *path, const double *arc, int64_t points, int64_t dims, const double *actual,
@@ -116,6 +122,6 @@ void trochia_contour(const double *path, const double *arc, int64_t points, int6
             .square = square, .u = at[i] < points - 1 ? 0 : 1, .chord = at[i] < points - 1 ? at[i] : at[i] - 1};
         best = walk(&t, at[i], 1, point, reach, best);
         best = walk(&t, at[i], -1, point, reach, best);
-        distance[i] = refined(&t, best, point);
+        distance[i] = sqrt(fmin(refined(&t, best, point), square)); /* the path does pass through its samples */
     }
 }
