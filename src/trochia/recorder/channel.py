@@ -77,6 +77,8 @@ class Header:
     def __post_init__(self) -> None:
         if not (math.isfinite(self.period) and self.period > 0):
             raise RecordingError(f"a recording's period must be above zero, not {self.period!r} s")
+        if not self.channels:
+            raise RecordingError("a recording needs at least one channel")
         names = [channel.name for channel in self.channels]
         twice = sorted({name for name in names if names.count(name) > 1})
         if twice:

@@ -114,7 +114,7 @@ def decode(path: Path) -> Description:
         )
     try:
         return _described(msgspec.json.decode(text, type=_Sidecar))
-    except (msgspec.DecodeError, ValueError, RecordingError) as error:
+    except (msgspec.DecodeError, ValueError, OverflowError, RecordingError) as error:
         raise RecordingError(f"{path}: damaged sidecar: {error}") from None
 
 
