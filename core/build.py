@@ -17,6 +17,7 @@ ROOT = CORE.parent
 HEADERS = [
     "host/move.h",
     "host/path.h",
+    "host/plan.h",
     "host/steps.h",
     "host/gcode.h",
     "host/twin.h",

@@ -1,18 +1,21 @@
 /* The path as the planner sees it, and the trajectory over it.
  *
- * A segment is a curve x(s), s in [0, length], in n axes, with |x'| = 1 at both ends (so ds/dt is one continuous
- * speed from segment to segment).  Its coefficients stand in one pool of doubles, at `data`:
+ * A segment is a curve x(s), s in [0, length], in n axes; x' is continuous from segment to segment wherever motion
+ * does not stop, and |x'| = 1 at the ends of lines and arcs (so ds/dt is one continuous speed).  The norm is that of
+ * X Y Z where these move, else of U V W, else of A B C.  Coefficients stand in one pool of doubles, at `data`:
  *   LINE   start[n] direction[n]
- *   ARC    centre[2] radius angle angle_rate radius_rate start[n] slope[n]
+ *   ARC    centre[2] radius angle angle_rate radius_rate start[n] slope[n] angle_curve
  *          first plane axis  = centre[0] + r cos(phi), second = centre[1] + r sin(phi),
- *          phi = angle + angle_rate s [rad], r = radius + radius_rate s; every other axis = start + slope s
- *          (start and slope of the two plane axes are 0)
+ *          phi = angle + angle_rate s + angle_curve s^2 [rad], r = radius + radius_rate s (both rates of change beyond
+ *          angle_rate are 0 but for a spiral); every other axis = start + slope s (both 0 for the two plane axes)
  *   CUBIC  c0[n] c1[n] c2[n] c3[n], x = c0 + c1 s + c2 s^2 + c3 s^3
  * A phase is a stretch of constant jerk along s; phases follow each other without a gap from t = 0. */
 #ifndef TROCHIA_PATH_H
 #define TROCHIA_PATH_H
 
 #include <stdint.h>
+
+#include "host/move.h"
 
 enum trochia_segment_kind { TROCHIA_LINE = 0, TROCHIA_ARC_SEGMENT = 1, TROCHIA_CUBIC = 2 };
 
@@ -22,9 +25,9 @@ typedef struct {
     uint64_t data;      /* index of the first coefficient in the pool */
     uint32_t move;      /* row of the program's move it belongs to (a blend: the move it enters) */
     uint8_t kind;
-    uint8_t stop;     /* 1: at rest at its end */
-    uint8_t first;    /* arc: column of the plane's first axis */
-    uint8_t second;   /* arc: column of the plane's second axis */
+    uint8_t stop;   /* 1: at rest at its end */
+    uint8_t first;  /* arc: column of the plane's first axis */
+    uint8_t second; /* arc: column of the plane's second axis */
 } trochia_segment;
 
 typedef struct {
@@ -35,5 +38,42 @@ typedef struct {
     uint32_t segment; /* row of the toolpath's segments */
     uint32_t flags;   /* bit 0: a rest (dwell, spin-up, tool change): v = a = j = 0 */
 } trochia_phase;
+
+/* x and its derivatives by s, all at `s` of one segment in n axes: out[order * n + axis] for order = 0..orders-1 (at
+ * most 4). */
+void trochia_segment_at(const trochia_segment *segment, const double *pool, uint32_t n, double s, uint32_t orders,
+                        double *out);
+
+/* The `order`-th time derivative of position (0..3) at each of `count` states (t and duration unread): out[count][n].
+ */
+void trochia_path_sample(const trochia_segment *segments, const double *pool, uint32_t n, const trochia_phase *states,
+                         uint64_t count, uint32_t order, double *out);
+
+/* Widens least[n], greatest[n] by the segments [first, last), exactly (arcs and cubics by the roots of x'). */
+void trochia_path_extents(const trochia_segment *segments, const double *pool, uint32_t n, uint64_t first,
+                          uint64_t last, double *least, double *greatest);
+
+/* What the moves of a program are read with. */
+typedef struct {
+    const trochia_move *moves;
+    const uint8_t *rests; /* per move: 1 = motion is at rest before it */
+    const double *rpm;    /* per move: spindle speed, read for feeds per revolution only */
+    uint64_t count;       /* moves */
+    double start[9];      /* position before the first move */
+    double tolerance;     /* of the machine, for G64 without P; blends are left out where tolerance < 0 */
+    uint32_t axes;        /* columns of the path */
+    uint32_t columns[9];  /* which of the nine letters each is */
+} trochia_path_input;
+
+/* What is made of them; room for 2 segments and (7 + 6 axes) coefficients a move is the caller's. */
+typedef struct {
+    trochia_segment *segments;
+    double *pool;
+    uint64_t segment_count, pool_count;
+    uint64_t failed_move; /* row of the move that has no speed (see the result) */
+} trochia_path_output;
+
+/* Returns 0, or 1 when a feed has no rate, or 2 when a feed per revolution finds the spindle at rest. */
+int32_t trochia_path_build(const trochia_path_input *input, trochia_path_output *output);
 
 #endif

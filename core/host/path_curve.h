@@ -1,0 +1,50 @@
+/* Between a program's moves and its path: one move as a curve, and what is to happen where two of them meet.
+ *
+ * Internal to path_*.c, not part of the schema.
+ * Legend: d length taken from a curve at a joint for the blend, P tolerance, kappa |x''| [1/mm]. */
+#ifndef TROCHIA_PATH_CURVE_H
+#define TROCHIA_PATH_CURVE_H
+
+#include "host/path.h"
+
+/* n columns; group k (X Y Z, then A B C, then U V W) is columns groups[k] up to groups[k + 1]. */
+typedef struct {
+    uint32_t n;
+    uint32_t groups[4];
+} trochia_frame;
+
+typedef struct {
+    double length, speed, tolerance;   /* tolerance <= 0: no blend at either end */
+    double x0[9], x1[9], t0[9], t1[9]; /* ends, and x' there */
+    double arc[7];                     /* centre[2] radius angle angle_rate radius_rate angle_curve */
+    double kappa;                      /* greatest |x''|, 0 for a line */
+    uint32_t move;
+    uint8_t kind, first, second;
+    uint8_t halt;   /* at rest before it */
+    uint8_t settle; /* at rest after it (G61.1) */
+} trochia_curve;
+
+typedef struct {
+    double before, after; /* length wanted (then: taken) of the curve before and after; 0 and 0: no blend */
+    int stop;
+} trochia_joint;
+
+typedef struct {
+    double c[36]; /* c0 c1 c2 c3 of n axes each */
+    double length;
+} trochia_blend;
+
+void trochia_curve_at(const trochia_curve *curve, uint32_t n, double s, uint32_t orders, double *out);
+
+/* Greatest norm over the groups: mm and degrees count alike. */
+double trochia_group_norm(const trochia_frame *frame, const double *vector);
+
+/* What is wanted where `a` meets `b`, if both had all the length in the world. */
+trochia_joint trochia_joint_wanted(const trochia_frame *frame, const trochia_curve *a, const trochia_curve *b);
+
+/* Makes the blend inside the lengths the joint now gives, shrinking it until it is proven to stay inside the
+ * tolerance; where none does, the joint becomes a stop. */
+void trochia_joint_blend(const trochia_frame *frame, const trochia_curve *a, const trochia_curve *b,
+                         trochia_joint *joint, trochia_blend *blend);
+
+#endif

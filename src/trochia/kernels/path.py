@@ -1,0 +1,125 @@
+"""Face of ``core/host/path.h``: moves into a path, and a path's points and extents.
+
+In: rows of ``MOVE``; or a path's segments and coefficients.  Out: segments and coefficients; positions; bounds.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from trochia.kernels.layout import MOVE, PHASE, SEGMENT, ffi, lib, pointer
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+_COEFFICIENTS = {lib.TROCHIA_LINE: (0, 2), lib.TROCHIA_ARC_SEGMENT: (7, 2), lib.TROCHIA_CUBIC: (0, 4)}
+_NINE = 9
+_FAULTS = {0: None, 1: "feed", 2: "spindle"}
+
+
+def build(
+    moves: NDArray[np.void],
+    rests: NDArray[np.uint8],
+    rpm: NDArray[np.float64] | None,
+    *,
+    start: NDArray[np.float64],
+    columns: Sequence[int],
+    tolerance: float,
+) -> tuple[NDArray[np.void], NDArray[np.float64], tuple[str, int] | None]:
+    """Return the segments and coefficients of a program's moves, and what stopped the work, if anything did.
+
+    Parameters
+    ----------
+    moves
+        Rows of MOVE (moves,).
+    rests
+        1 where motion is at rest before the move (moves,).
+    rpm
+        Spindle speed at each move (moves,) [rev/min]; None where no feed is per revolution.
+    start
+        Position before the first move (9,).
+    columns
+        Which of the nine letters the path's axes are, rising.
+    tolerance
+        Of G64 without P [mm]; negative: no blends at all.
+
+    Returns
+    -------
+    tuple
+        Segments (k,), coefficients, and None or ("feed" | "spindle", row of the move that has no speed).
+    """
+    if moves.dtype != MOVE or rests.shape != moves.shape or start.shape != (_NINE,):
+        raise ValueError("a path is built from MOVE rows, as many rests, and a start of nine axes")
+    if (
+        not 1 <= len(columns) <= _NINE
+        or list(columns) != sorted(set(columns))
+        or not 0 <= min(columns) <= max(columns) < _NINE
+    ):
+        raise ValueError(f"columns must be rising numbers of letters, not {columns!r}")
+    axes, count = len(columns), len(moves)
+    speeds = np.zeros(count) if rpm is None else np.ascontiguousarray(rpm, dtype=np.float64)
+    if speeds.shape != moves.shape:
+        raise ValueError("one spindle speed a move")
+    segments = np.empty(2 * count, dtype=SEGMENT)
+    pool = np.empty((7 + 6 * axes) * count)
+    given = ffi.new("trochia_path_input *")
+    made = ffi.new("trochia_path_output *")
+    flags = np.ascontiguousarray(rests, dtype=np.uint8)
+    given.moves, given.rests, given.rpm = (
+        pointer(moves, "trochia_move *"), pointer(flags, "uint8_t *"), pointer(speeds, "double *")
+    )  # fmt: skip
+    given.count, given.axes, given.tolerance = count, axes, tolerance
+    given.start = list(start)
+    given.columns = list(columns) + [0] * (_NINE - axes)
+    made.segments, made.pool = pointer(segments, "trochia_segment *"), pointer(pool, "double *")
+    fault = _FAULTS[lib.trochia_path_build(given, made)]
+    segments.resize(made.segment_count, refcheck=False)
+    pool.resize(made.pool_count, refcheck=False)
+    return segments, pool, (fault, int(made.failed_move)) if fault else None
+
+
+def check(segments: NDArray[np.void], pool: NDArray[np.float64], axes: int) -> None:
+    """Refuse segments whose coefficients lie outside the pool or whose arc plane is no axis (ValueError)."""
+    if segments.dtype != SEGMENT or pool.dtype != np.float64 or not 1 <= axes <= _NINE:
+        raise ValueError("a path is SEGMENT rows and a pool of doubles in one to nine axes")
+    kinds, seen = segments["kind"], 0
+    for code, (fixed, rows) in _COEFFICIENTS.items():
+        data = segments["data"][kinds == code]
+        seen += data.size
+        if data.size and int(data.max()) + fixed + rows * axes > pool.size:
+            raise ValueError("a segment's coefficients lie outside the pool")
+    arcs = segments[kinds == lib.TROCHIA_ARC_SEGMENT]
+    if seen != segments.size or (arcs["first"] >= axes).any() or (arcs["second"] >= axes).any():
+        raise ValueError("a segment of unknown kind, or an arc in a plane that is not there")
+
+
+def sample(
+    segments: NDArray[np.void], pool: NDArray[np.float64], axes: int, states: NDArray[np.void], order: int
+) -> NDArray[np.float64]:
+    """Return the time derivative of position of the given order (0 to 3) at each state (states, axes)."""
+    if states.dtype != PHASE or not 0 <= order <= 3 or (states.size and int(states["segment"].max()) >= segments.size):
+        raise ValueError("states are PHASE rows on the path's segments, orders 0 to 3")
+    out = np.empty((len(states), axes))
+    held = np.ascontiguousarray(states)
+    lib.trochia_path_sample(
+        pointer(segments, "trochia_segment *"), pointer(pool, "double *"), axes,
+        pointer(held, "trochia_phase *"), len(states), order, pointer(out, "double *"),
+    )  # fmt: skip
+    return out
+
+
+def extents(
+    segments: NDArray[np.void], pool: NDArray[np.float64], rows: tuple[int, int], bounds: NDArray[np.float64]
+) -> None:
+    """Widen bounds (2, axes) [least; greatest] by the segments rows[0] up to rows[1], exactly."""
+    axes, (first, last) = bounds.shape[-1], rows
+    if bounds.shape != (2, axes) or not 0 <= first <= last <= segments.size:
+        raise ValueError("bounds are (2, axes), segments lie in the path")
+    least: Any = pointer(bounds, "double *")
+    lib.trochia_path_extents(
+        pointer(segments, "trochia_segment *"), pointer(pool, "double *"), axes, first, last, least, least + axes
+    )

@@ -1,0 +1,143 @@
+"""Face of ``core/host/plan.h``: trapezoid profiles over a path.
+
+In: segments and coefficients, limits, rests.  Out: pieces (``PIECE``); phases, states, times and peaks from them.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from trochia.kernels.layout import PHASE, SEGMENT, dtype_of, ffi, lib, pointer
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+PIECE = dtype_of("trochia_piece")
+_ROWS = 18
+_LEAST_ROOM = 4
+
+
+class Planned:
+    """What the pass over one path came to: its pieces, and readings of them; arrays stay alive with it.
+
+    Parameters
+    ----------
+    segments, pool
+        The path, already checked.
+    matrix
+        Rows of limited quantities over the axes (rows, axes), the unit matrix first.
+    velocity, acceleration
+        Limit of each row (rows,).
+    caps
+        Greatest velocity and acceleration of the vector X Y Z; infinity where there is none.
+    linear
+        Number of leading columns that are X, Y or Z.
+    rests
+        Segment before which motion rests (rests,), rising, and for how long [s] (rests,).
+    """
+
+    def __init__(
+        self,
+        segments: NDArray[np.void],
+        pool: NDArray[np.float64],
+        *,
+        matrix: NDArray[np.float64],
+        velocity: NDArray[np.float64],
+        acceleration: NDArray[np.float64],
+        caps: tuple[float, float],
+        linear: int,
+        rests: tuple[NDArray[np.uint64], NDArray[np.float64]],
+    ) -> None:
+        rows, axes = matrix.shape
+        if rows > _ROWS or not np.array_equal(matrix[:axes], np.eye(axes)):
+            raise ValueError(f"limits need the unit matrix first and at most {_ROWS} rows")
+        if (
+            velocity.shape != (rows,)
+            or acceleration.shape != (rows,)
+            or not (np.minimum(velocity, acceleration) > 0).all()
+        ):
+            raise ValueError("every row needs a velocity and an acceleration above zero")
+        if rests[0].shape != rests[1].shape or (np.diff(rests[0].astype(np.int64)) < 0).any():
+            raise ValueError("rests need a rising segment and a time each")
+        self._segments, self._pool, self._axes = segments, pool, axes
+        self._rests = (rests[0].astype(np.uint64), rests[1].astype(np.float64))
+        self._limits = ffi.new("trochia_limits *")
+        self._limits.axes, self._limits.rows, self._limits.linear = axes, rows, linear
+        self._limits.matrix = list(matrix.ravel()) + [0.0] * (162 - matrix.size)
+        self._limits.velocity = list(velocity) + [1.0] * (_ROWS - rows)
+        self._limits.acceleration = list(acceleration) + [1.0] * (_ROWS - rows)
+        self._limits.path_velocity, self._limits.path_acceleration = caps
+        if segments.dtype != SEGMENT:
+            raise ValueError("a path is SEGMENT rows")
+        count = lib.trochia_plan_count(*self._path(), axes, len(segments))
+        self.pieces = np.empty(count, dtype=PIECE)
+        self.duration: float = lib.trochia_plan(
+            *self._path(), len(segments), self._limits, *self._rest(), self._piece(), count
+        )
+        self.pieces.setflags(write=False)
+
+    def _path(self) -> tuple[Any, Any]:
+        return pointer(self._segments, "trochia_segment *"), pointer(self._pool, "double *")
+
+    def _piece(self) -> Any:  # noqa: ANN401 - a cffi pointer has no Python type
+        return pointer(self.pieces, "trochia_piece *")
+
+    def _rest(self) -> tuple[Any, Any, int]:
+        where, seconds = self._rests
+        return pointer(where, "uint64_t *"), pointer(seconds, "double *"), len(where)
+
+    def phases(self, size: int) -> Iterator[NDArray[np.void]]:
+        """Yield phases in order, at most ``size`` (at least 4) a block (PHASE,)."""
+        if size < _LEAST_ROOM:
+            raise ValueError(f"a block of phases needs room for {_LEAST_ROOM}, not {size}")
+        cursor = ffi.new("trochia_phase_cursor *")
+        segments, _ = self._path()
+        while True:
+            block = np.empty(size, dtype=PHASE)
+            made = lib.trochia_plan_phases(
+                segments,
+                self._piece(),
+                len(self.pieces),
+                *self._rest(),
+                cursor,
+                pointer(block, "trochia_phase *"),
+                size,
+            )
+            if not made:
+                return
+            yield block[:made]
+
+    def states(self, times: NDArray[np.float64]) -> NDArray[np.void]:
+        """Return the state at each time [s], clamped to the ends (times,) of PHASE; needs at least one piece."""
+        if not self.pieces.size:
+            raise ValueError("a path without motion has no states")
+        held = np.ascontiguousarray(times, dtype=np.float64)
+        out = np.empty(held.shape, dtype=PHASE)
+        segments, _ = self._path()
+        lib.trochia_plan_states(
+            segments, self._piece(), len(self.pieces), pointer(held, "double *"), held.size,
+            pointer(out, "trochia_phase *"),
+        )  # fmt: skip
+        return out
+
+    def move_times(self, moves: int) -> NDArray[np.float64]:
+        """Return the time each of the program's moves takes (moves,) [s]; a blend counts to the move it enters."""
+        if self._segments.size and int(self._segments["move"].max()) >= moves:
+            raise ValueError("the path has more moves than the program")
+        out = np.zeros(moves)
+        segments, _ = self._path()
+        lib.trochia_plan_move_times(segments, self._piece(), len(self.pieces), pointer(out, "double *"))
+        return out
+
+    def peaks(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return the greatest |velocity| and |acceleration| of each limited row, (rows,) each."""
+        velocity, acceleration = np.zeros(self._limits.rows), np.zeros(self._limits.rows)
+        lib.trochia_plan_peaks(
+            *self._path(), self._limits, self._piece(), len(self.pieces),
+            pointer(velocity, "double *"), pointer(acceleration, "double *"),
+        )  # fmt: skip
+        return velocity, acceleration

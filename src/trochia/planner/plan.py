@@ -1,0 +1,41 @@
+"""The one call.  In: a program's path, its machine, the name of a profile.  Out: its Trajectory."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from trochia.errors import LimitError
+from trochia.planner.limits import Limits
+from trochia.planner.rests import rests_of
+from trochia.planner.trajectory import Trajectory
+from trochia.planner.trapezoid import TrapezoidSchedule
+
+if TYPE_CHECKING:
+    from trochia.machine.machine import Machine
+    from trochia.planner.schedule import Profile
+    from trochia.program import Program
+    from trochia.toolpath import Toolpath
+
+#: every velocity profile by its name
+PROFILES: dict[str, Profile] = {"trapezoid": TrapezoidSchedule}
+
+
+def plan(path: Toolpath, machine: Machine, *, program: Program, profile: str = "trapezoid") -> Trajectory:
+    """Return the motion of a program along its path, as fast as the machine's limits allow.
+
+    Raises
+    ------
+    LimitError
+        When there is no such profile.
+    """
+    if profile not in PROFILES:
+        raise LimitError(f"there is no velocity profile {profile!r}", hint="There are: " + ", ".join(sorted(PROFILES)))
+    limits = Limits.of(machine)
+    rests = rests_of(program, machine, path)
+    schedule = PROFILES[profile](path, limits, rests) if len(path) else None
+    still = sum(rests.times.values())
+    duration = still if schedule is None else schedule.duration
+    return Trajectory(
+        program=program, path=path, limits=limits, profile=profile, schedule=schedule,
+        times={"motion": duration - still} | rests.times, duration=duration,
+    )  # fmt: skip

@@ -1,0 +1,128 @@
+"""Motion over time.  In: a path and the schedule of speed along it.  Out: position and its derivatives at any time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from trochia.kernels import path as kernel
+from trochia.kernels.layout import PHASE
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from trochia.planner.limits import Limits
+    from trochia.planner.schedule import Schedule
+    from trochia.program import Program
+    from trochia.toolpath import Toolpath
+
+BLOCK = 65536  #: phases a block: 3.7 MB
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Trajectory:
+    """Motion of one program on one machine, without a gap from t = 0 to ``duration``.
+
+    Attributes
+    ----------
+    program, path, limits
+        What was planned.
+    profile
+        Name of the velocity profile.
+    schedule
+        Speed along the path; None when nothing moves.
+    times
+        Total time by cause: ``motion``, ``dwell``, ``spindle``, ``tool`` [s]; they sum to ``duration``.
+    duration
+        Whole time [s].
+    """
+
+    program: Program
+    path: Toolpath
+    limits: Limits
+    profile: str
+    schedule: Schedule | None
+    times: dict[str, float]
+    duration: float
+
+    def blocks(self, size: int = BLOCK) -> Iterator[NDArray[Any]]:
+        """Yield all phases in order, at most ``size`` (4 or more) a block (PHASE,).
+
+        A path without motion has one phase if it has time, a rest, whose segment is not there.
+        """
+        if self.schedule is not None:
+            yield from self.schedule.phases(size)
+        elif self.duration > 0.0:
+            rest = np.zeros(1, dtype=PHASE)
+            rest["duration"], rest["flags"] = self.duration, 1
+            yield rest
+
+    def states(self, times: ArrayLike) -> NDArray[Any]:
+        """Return segment, s, v, a, j and flags at each time [s], clamped to the ends (times,) of PHASE."""
+        at = np.atleast_1d(np.asarray(times, dtype=np.float64))
+        if self.schedule is not None:
+            return self.schedule.states(at)
+        rest = np.zeros(len(at), dtype=PHASE)
+        rest["t"], rest["flags"] = at, 1
+        return rest
+
+    def _derivative(self, times: ArrayLike, order: int) -> NDArray[np.float64]:
+        if self.schedule is None:
+            still = self.path.start if order == 0 else np.zeros(len(self.path.axes))
+            return np.tile(still, (len(np.atleast_1d(np.asarray(times))), 1))
+        return kernel.sample(self.path.segments, self.path.pool, len(self.path.axes), self.states(times), order)
+
+    def position(self, times: ArrayLike) -> NDArray[np.float64]:
+        """Return the axes' positions at each time (times, n) [mm, degree]."""
+        return self._derivative(times, 0)
+
+    def velocity(self, times: ArrayLike) -> NDArray[np.float64]:
+        """Return the axes' velocities at each time (times, n) [mm/s, degree/s]."""
+        return self._derivative(times, 1)
+
+    def acceleration(self, times: ArrayLike) -> NDArray[np.float64]:
+        """Return the axes' accelerations at each time (times, n) [mm/s², degree/s²]."""
+        return self._derivative(times, 2)
+
+    def jerk(self, times: ArrayLike) -> NDArray[np.float64]:
+        """Return the axes' jerks inside the phases at each time (times, n) [mm/s³, degree/s³]."""
+        return self._derivative(times, 3)
+
+    def path_speed(self, times: ArrayLike) -> NDArray[np.float64]:
+        """Return ds/dt at each time (times,) [mm/s; degree/s where only rotary axes move]."""
+        return self.states(times)["v"]
+
+    def line_at(self, times: ArrayLike) -> NDArray[np.uint32]:
+        """Return the source line whose move is under way at each time (times,); 0 where nothing ever moves."""
+        if self.schedule is None:
+            return np.zeros(len(np.atleast_1d(np.asarray(times))), dtype=np.uint32)
+        moves = self.path.segments["move"][self.states(times)["segment"]]
+        return self.program.moves["line"][moves]
+
+    @property
+    def move_times(self) -> NDArray[np.float64]:
+        """Time in motion of each of the program's moves (moves,) [s]; a blend counts to the move it enters."""
+        count = len(self.program.moves)
+        return np.zeros(count) if self.schedule is None else self.schedule.move_times(count)
+
+    @property
+    def peaks(self) -> dict[str, dict[str, float | None]]:
+        """Greatest |velocity|, |acceleration| and |jerk| of each axis; jerk None where the profile lets it be."""
+        rows = {} if self.schedule is None else self.schedule.peaks()
+        jerk = 0.0 if self.schedule is None else None
+        none: dict[str, float | None] = {"velocity": 0.0, "acceleration": 0.0, "jerk": jerk}
+        return {
+            letter: none | {kind: float(values[column]) for kind, values in rows.items()}
+            for column, letter in enumerate(self.path.axes)
+        }
+
+    @property
+    def slowed(self) -> NDArray[np.intp]:
+        """Rows of the program's moves whose feed a velocity limit keeps from being reached, rising."""
+        if self.schedule is None:
+            return np.zeros(0, dtype=np.intp)
+        return np.unique(self.path.segments["move"][self.schedule.over_limit()]).astype(np.intp)

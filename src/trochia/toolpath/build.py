@@ -1,0 +1,100 @@
+"""Programs to paths.  In: a Program and the machine's axes.  Out: a Toolpath, with blends inside the tolerances."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from trochia.errors import LimitError, PlanningError, Source
+from trochia.kernels import path as kernel
+from trochia.program import AXES, MoveKind, Plane, Spindle, TimeLaw
+from trochia.toolpath.toolpath import Toolpath
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from trochia.machine.machine import Machine
+    from trochia.program import Program
+
+
+def build(program: Program, machine: Machine, *, blend: bool = True) -> Toolpath:
+    """Return the path of a program on a machine.
+
+    Parameters
+    ----------
+    program
+        Moves of zero length leave nothing; before each action motion rests.
+    machine
+        Its axes are the path's columns, its ``path_tolerance`` holds where G64 gives no P.
+    blend
+        False gives the programmed path itself, which stops wherever direction jumps.
+
+    Raises
+    ------
+    PlanningError
+        When the program moves an axis the machine does not have.
+    LimitError
+        When a feed has no speed: no F, or a feed per revolution with the spindle at rest.
+    """
+    _refuse_missing_axes(program, machine)
+    columns = machine.columns
+    segments, pool, fault = kernel.build(
+        program.moves, _rests(program), _spindle_speeds(program), start=program.start, columns=columns,
+        tolerance=machine.path_tolerance if blend else -1.0,
+    )  # fmt: skip
+    if fault:
+        raise _no_speed(program, *fault)
+    letters = "".join(axis.name for axis in machine.axes)
+    return Toolpath(axes=letters, start=program.start[list(columns)], segments=segments, pool=pool)
+
+
+def _rests(program: Program) -> NDArray[np.uint8]:
+    """Return 1 for each move before which an action stands (moves,)."""
+    rests = np.zeros(len(program.moves) + 1, dtype=np.uint8)
+    rests[[action.at for action in program.actions]] = 1
+    return rests[:-1]
+
+
+def _spindle_speeds(program: Program) -> NDArray[np.float64] | None:
+    """Return the nominal spindle speed at each move (moves,) [rev/min]; None when no feed asks for it."""
+    if not (program.moves["law"] == TimeLaw.PER_REV).any():
+        return None
+    speeds = np.zeros(len(program.moves))
+    changes = [(a.at, abs(a.speed) if a.direction else 0.0) for a in program.actions if isinstance(a, Spindle)]
+    for (at, speed), (until, _) in pairwise([*changes, (len(speeds), 0.0)]):
+        speeds[at:until] = speed
+    return speeds
+
+
+def _refuse_missing_axes(program: Program, machine: Machine) -> None:
+    """Raise when a move needs an axis the machine lacks, naming the first such line."""
+    missing = [column for column in range(len(AXES)) if column not in machine.columns]
+    moves = program.moves
+    if not len(moves) or not missing:
+        return
+    moved = moves["target"][:, missing] != program.start[missing]
+    arcs = np.flatnonzero(moves["kind"] == MoveKind.ARC)
+    for plane in Plane:
+        lacking = [missing.index(column) for column in plane.axes if column in missing]
+        flat = arcs[moves["plane"][arcs] == plane]
+        moved[flat[:, None], lacking] = True
+    rows = np.flatnonzero(moved.any(axis=1))
+    if rows.size:
+        row = int(rows[0])
+        letter = AXES[missing[int(np.flatnonzero(moved[row])[0])]]
+        raise PlanningError(
+            f"the move needs axis {letter}, which machine {machine.name!r} does not have",
+            source=Source(program.name, int(moves["line"][row])),
+            hint="Its axes are " + " ".join(axis.name for axis in machine.axes) + ".",
+        )
+
+
+def _no_speed(program: Program, fault: str, row: int) -> LimitError:
+    """Return the error for a move without speed."""
+    source = Source(program.name, int(program.moves["line"][row]))
+    if fault == "spindle":
+        return LimitError("a feed per revolution needs a turning spindle", source=source,
+                          hint="Start it with S… M3 before this line, or use G94.")  # fmt: skip
+    return LimitError("the move has no feed", source=source, hint="Give F… on this line or before it.")
