@@ -1,0 +1,196 @@
+"""The sink that prints: canonical functions in the spelling of LinuxCNC's stand-alone interpreter.
+
+In: canonical calls.  Out: bytes, one function a line, as ``rs274 -g`` prints them without its first two columns:
+program units and coordinates, four decimals, X Y Z A B C (so ``U V W`` cannot be shown).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from trochia.kernels.gcode import COMMENT_ROW, FEED_ROW
+from trochia.program.modes import MoveKind, PathMode, Plane, TimeLaw
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from trochia.kernels.gcode import Rows
+    from trochia.languages.gcode.sink import Position
+
+_SIX = "(%.4f, %.4f, %.4f, %.4f, %.4f, %.4f)\n"
+_PLANES = {Plane.XY: "XY", Plane.YZ: "YZ", Plane.ZX: "XZ"}
+_MODES = {
+    PathMode.BLEND_DEFAULT: "CONTINUOUS, %f",
+    PathMode.BLEND: "CONTINUOUS, %f",
+    PathMode.EXACT_PATH: "EXACT_PATH",
+    PathMode.EXACT_STOP: "EXACT_STOP",
+}
+_TOOL_OFFSET = "USE_TOOL_LENGTH_OFFSET(%.4f %.4f %.4f, %.4f %.4f %.4f, %.4f %.4f %.4f)\n"
+
+
+class Canon:
+    """Prints canonical functions by ``write``, which takes bytes."""
+
+    def __init__(self, write: Callable[[bytes], object]) -> None:
+        self.line = 0
+        self._write = write
+
+    def _print(self, text: str) -> None:
+        self._write(text.encode("latin-1"))
+
+    def straight_traverse(self, target: Position) -> None:
+        """Print a rapid move."""
+        self._print("STRAIGHT_TRAVERSE" + _SIX % tuple(target[:6]))
+
+    def straight_feed(self, target: Position) -> None:
+        """Print a feed move."""
+        self._print("STRAIGHT_FEED" + _SIX % tuple(target[:6]))
+
+    def arc_feed(self, target: Position, centre: tuple[float, float], turns: int, plane: Plane) -> None:
+        """Print an arc: end and centre on the plane's axes, turns, height of the end, rotary axes."""
+        first, second = plane.axes
+        self._print(
+            "ARC_FEED(%.4f, %.4f, %.4f, %.4f, %d, %.4f, %.4f, %.4f, %.4f)\n"
+            % (target[first], target[second], *centre, turns, target[plane.normal], *target[3:6])
+        )
+
+    def moves(self, rows: Rows) -> None:
+        """Print a batch of the fast path."""
+        at = 0
+        while at < len(rows):
+            text, at = rows.canon(at)
+            self._write(text)
+            if at < len(rows):  # a number too long for the C printer
+                self._row(rows, at)
+                at += 1
+
+    def _row(self, rows: Rows, at: int) -> None:
+        row = rows[at]
+        if row.kind == COMMENT_ROW:
+            self.comment(rows.comment(at))
+        elif row.kind == FEED_ROW:
+            self.set_feed_rate(row.rate)
+        elif row.kind == MoveKind.ARC:
+            self.arc_feed(list(row.target), (row.centre[0], row.centre[1]), row.turns, Plane(row.plane))
+        elif row.kind == MoveKind.FEED:
+            self.straight_feed(list(row.target))
+        else:
+            self.straight_traverse(list(row.target))
+
+    def dwell(self, seconds: float) -> None:
+        """Print a dwell."""
+        self._print(f"DWELL({seconds:.4f})\n")
+
+    def set_feed_mode(self, law: TimeLaw) -> None:
+        """Print whether the feed is per revolution."""
+        self._print(f"SET_FEED_MODE(0, {int(law == TimeLaw.PER_REV)})\n")
+
+    def set_feed_rate(self, rate: float) -> None:
+        """Print the feed."""
+        self._print(f"SET_FEED_RATE({rate:.4f})\n")
+
+    def set_inverse_time(self, per_minute: float, rate: float) -> None:
+        """Print the feed that makes a move last as long as inverse time asks."""
+        del per_minute
+        self.set_feed_rate(rate)
+
+    def use_length_units(self, *, inch: bool) -> None:
+        """Print the length units."""
+        self._print(f"USE_LENGTH_UNITS(CANON_UNITS_{'INCHES' if inch else 'MM'})\n")
+
+    def select_plane(self, plane: Plane) -> None:
+        """Print the plane."""
+        self._print(f"SELECT_PLANE(CANON_PLANE_{_PLANES[plane]})\n")
+
+    def set_g5x_offset(self, system: int, offset: Position) -> None:
+        """Print a coordinate system's origin."""
+        self._print(f"SET_G5X_OFFSET({system}, " + (_SIX % tuple(offset[:6]))[1:])
+
+    def set_g92_offset(self, offset: Position) -> None:
+        """Print the shift of all coordinate systems."""
+        self._print("SET_G92_OFFSET" + _SIX % tuple(offset[:6]))
+
+    def set_xy_rotation(self, degrees: float) -> None:
+        """Print the turn of the coordinate system."""
+        self._print(f"SET_XY_ROTATION({degrees:.4f})\n")
+
+    def use_tool_length_offset(self, offset: Position) -> None:
+        """Print the tool length offset."""
+        self._print(_TOOL_OFFSET % tuple(offset))
+
+    def set_motion_control_mode(self, mode: PathMode, tolerance: float) -> None:
+        """Print the path mode."""
+        text = _MODES[mode]
+        self._print(f"SET_MOTION_CONTROL_MODE(CANON_{text % tolerance if '%' in text else text})\n")
+
+    def set_naivecam_tolerance(self, tolerance: float) -> None:
+        """Print the tolerance of merging points."""
+        self._print(f"SET_NAIVECAM_TOLERANCE({tolerance:.4f})\n")
+
+    def set_feed_reference(self) -> None:
+        """Print what the feed refers to."""
+        self._print("SET_FEED_REFERENCE(CANON_XYZ)\n")
+
+    def set_spindle_mode(self) -> None:
+        """Print that S is the speed itself."""
+        self._print("SET_SPINDLE_MODE(0 0.0000)\n")
+
+    def set_spindle_speed(self, speed: float) -> None:
+        """Print the spindle speed."""
+        self._print(f"SET_SPINDLE_SPEED(0, {speed:.4f})\n")
+
+    def start_spindle(self, direction: int) -> None:
+        """Print the spindle's start."""
+        self._print(f"START_SPINDLE_{'CLOCKWISE' if direction > 0 else 'COUNTERCLOCKWISE'}(0)\n")
+
+    def stop_spindle(self) -> None:
+        """Print the spindle's stop."""
+        self._print("STOP_SPINDLE_TURNING(0)\n")
+
+    def mist(self, *, on: bool) -> None:
+        """Print mist coolant."""
+        self._print(f"MIST_{'ON' if on else 'OFF'}()\n")
+
+    def flood(self, *, on: bool) -> None:
+        """Print flood coolant."""
+        self._print(f"FLOOD_{'ON' if on else 'OFF'}()\n")
+
+    def select_tool(self, tool: int) -> None:
+        """Print the tool made ready."""
+        self._print(f"SELECT_TOOL({tool})\n")
+
+    def start_change(self) -> None:
+        """Print the beginning of a tool change."""
+        self._print("START_CHANGE()\n")
+
+    def change_tool(self, tool: int) -> None:
+        """Print the tool change."""
+        self._print(f"CHANGE_TOOL({tool})\n")
+
+    def comment(self, text: str) -> None:
+        """Print a comment."""
+        self._print(f'COMMENT("{text}")\n')
+
+    def message(self, text: str) -> None:
+        """Print a message."""
+        self._print(f'MESSAGE("{text}")\n')
+
+    def program_stop(self, *, optional: bool) -> None:
+        """Print a stop."""
+        self._print(f"{'OPTIONAL_' if optional else ''}PROGRAM_STOP()\n")
+
+    def pallet_shuttle(self) -> None:
+        """Print the change of pallets."""
+        self._print("PALLET_SHUTTLE()\n")
+
+    def program_end(self) -> None:
+        """Print the end of the program."""
+        self._print("PROGRAM_END()\n")
+
+    def finish(self) -> None:
+        """Print that the text ended at its ``%``."""
+        self._print("FINISH()\n")
+
+    def on_reset(self) -> None:
+        """Print a reset."""
+        self._print("ON_RESET()\n")

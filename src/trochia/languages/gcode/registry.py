@@ -1,0 +1,91 @@
+"""The tables of the language: every code and word, and the order in which they act.
+
+To add a code, write its row and its function in the file of its modal group; a new group is named here once.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from trochia.languages.gcode.groups import (
+    arcs,
+    compensation,
+    coolant,
+    coordinates,
+    distance,
+    dwell,
+    feed,
+    homes,
+    length_units,
+    motion,
+    path_control,
+    plane,
+    retract,
+    shift,
+    spindle,
+    stopping,
+    tool,
+)
+
+if TYPE_CHECKING:
+    from trochia.languages.gcode.codes import Code, WordCode
+
+#: The order in which the parts of one line act, whatever their place on it.
+ORDER = (
+    "spindle mode",
+    "feed mode",
+    "feed",
+    "speed",
+    "tool",
+    "tool change",
+    "spindle",
+    "coolant",
+    "dwell",
+    "plane",
+    "length units",
+    "compensation",
+    "tool length",
+    "coordinate system",
+    "path control",
+    "distance",
+    "arc distance",
+    "retract",
+    "non-modal",
+    "shift",
+    "motion",
+    "stop",
+)
+RANK = {step: rank for rank, step in enumerate(ORDER)}
+
+#: number in tenths -> code
+G_CODES: dict[int, Code] = {
+    **motion.G_CODES,
+    **arcs.G_CODES,
+    **dwell.G_CODES,
+    **plane.G_CODES,
+    **length_units.G_CODES,
+    **homes.G_CODES,
+    **compensation.G_CODES,
+    **tool.G_CODES,
+    **coordinates.G_CODES,
+    **path_control.G_CODES,
+    **distance.G_CODES,
+    **shift.G_CODES,
+    **feed.G_CODES,
+    **spindle.G_CODES,
+    **retract.G_CODES,
+}
+
+#: number in tenths -> code
+M_CODES: dict[int, Code] = {
+    **stopping.M_CODES,
+    **spindle.M_CODES,
+    **tool.M_CODES,
+    **coolant.M_CODES,
+}
+
+#: letter -> word that acts by itself
+WORDS: dict[str, WordCode] = {word.letter: word for word in (feed.F, spindle.S, tool.T)}
+
+MOST_M_CODES = 4  #: M codes one line may have
+G_TENTH = 1e-3  #: tenths by which a G number may miss a code
