@@ -8,42 +8,42 @@ enum { OFFSET_SLOT = 9, RADIUS_SLOT = 12 };
 
 static const uint8_t FIRST[3] = {0, 1, 2}, SECOND[3] = {1, 2, 0}, NORMAL[3] = {2, 0, 1};
 
+static double distance(double x, double y) {
+    return sqrt(x * x + y * y);
+}
+
 static int centre_form(const trochia_modal *modal, const trochia_plain_line *line, trochia_move *row) {
-    const unsigned first = FIRST[modal->plane], second = SECOND[modal->plane];
-    const unsigned ways[2] = {first, second};
+    const unsigned axes[2] = {FIRST[modal->plane], SECOND[modal->plane]};
     for (unsigned k = 0; k < 2; k++) {
-        const unsigned slot = OFFSET_SLOT + ways[k];
-        if (line->seen >> slot & 1) {
-            row->centre[k] = modal->centre_absolute ? line->word[slot] : modal->position[ways[k]] + line->word[slot];
-        } else if (modal->centre_absolute) {
+        const unsigned slot = OFFSET_SLOT + axes[k];
+        const int given = line->seen >> slot & 1;
+        if (modal->centre_absolute && !given) {
             return 0;
-        } else {
-            row->centre[k] = modal->position[ways[k]];
         }
+        const double word = given ? line->word[slot] : 0.0;
+        row->centre[k] = modal->centre_absolute ? word : modal->position[axes[k]] + word;
     }
-    const double from_x = modal->position[first] - row->centre[0], from_y = modal->position[second] - row->centre[1];
-    const double to_x = row->target[first] - row->centre[0], to_y = row->target[second] - row->centre[1];
-    const double start = sqrt(from_x * from_x + from_y * from_y), end = sqrt(to_x * to_x + to_y * to_y);
+    const double start = distance(modal->position[axes[0]] - row->centre[0], modal->position[axes[1]] - row->centre[1]);
+    const double end = distance(row->target[axes[0]] - row->centre[0], row->target[axes[1]] - row->centre[1]);
     const double difference = fabs(start - end), greater = start > end ? start : end;
     return start >= modal->least_radius && end >= modal->least_radius && difference <= modal->spiral_most &&
-           (difference <= modal->spiral || difference <= modal->spiral_share * greater);
+           (difference <= modal->spiral || difference / greater <= modal->spiral_share);
 }
 
 /* Of the two circles of radius |R| through both ends, R > 0 takes the arc of at most half a turn.  A chord within 1e-12
  * of the diameter counts as the diameter. */
 static int radius_form(const trochia_modal *modal, const trochia_plain_line *line, uint8_t motion, trochia_move *row) {
     const unsigned first = FIRST[modal->plane], second = SECOND[modal->plane];
-    const double x = modal->position[first], y = modal->position[second];
-    const double along_x = row->target[first] - x, along_y = row->target[second] - y;
-    const double half = sqrt(along_x * along_x + along_y * along_y) / 2.0, radius = fabs(line->word[RADIUS_SLOT]);
-    if (half == 0.0 || radius == 0.0 || half - radius > modal->least_radius) {
+    const double x = modal->position[first], y = modal->position[second], radius = line->word[RADIUS_SLOT];
+    const double across = row->target[first] - x, up = row->target[second] - y, chord = distance(across, up);
+    const double half = chord / 2.0, size = fabs(radius);
+    if (chord == 0.0 || size == 0.0 || half - size > modal->least_radius) {
         return 0;
     }
-    const double height = half / radius > 1.0 - 1e-12 ? 0.0 : sqrt(radius * radius - half * half);
-    const int right = (motion == 2) == (line->word[RADIUS_SLOT] > 0.0);
-    const double share = (right ? height : -height) / (2.0 * half);
-    row->centre[0] = (x + row->target[first]) / 2.0 + share * along_y;
-    row->centre[1] = (y + row->target[second]) / 2.0 - share * along_x;
+    const double away = half > size * (1.0 - 1e-12) ? 0.0 : sqrt(size * size - half * half);
+    const double left = away / chord * ((motion == 3) == (radius > 0.0) ? 1.0 : -1.0);
+    row->centre[0] = (x + row->target[first]) / 2.0 - up * left;
+    row->centre[1] = (y + row->target[second]) / 2.0 + across * left;
     return 1;
 }
 

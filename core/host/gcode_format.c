@@ -1,5 +1,5 @@
 /* Rows into canonical commands, four decimals.  Numbers are rounded as exact decimal arithmetic rounds them (half to
- * even), so that the text is the same as Python's; a zero has no sign. */
+ * even) and a negative zero has its sign, so that the text is that of printf and Python. */
 #include "host/gcode.h"
 
 #include <math.h>
@@ -55,7 +55,7 @@ static uint8_t *put_number(uint8_t *out, double x) {
     const int64_t value = scaled(x);
     uint64_t size = value < 0 ? 0U - (uint64_t)value : (uint64_t)value;
     const unsigned decimals = (unsigned)(size % 10000);
-    if (value < 0) {
+    if (signbit(x)) {
         *out++ = '-';
     }
     out = put_whole(out, size / 10000);

@@ -48,7 +48,7 @@ NUMBERS = st.one_of(
 @example(0.00015)
 @example(99999999999.99995)
 def test_numbers_are_rounded_as_python_rounds(x: float) -> None:
-    assert text_of(rows_of(1, kind=FEED_ROW, rate=x)) == f"SET_FEED_RATE({x:z.4f})\n"
+    assert text_of(rows_of(1, kind=FEED_ROW, rate=x)) == f"SET_FEED_RATE({x:.4f})\n"
 
 
 def test_a_tie_is_decided_by_the_exact_value() -> None:

@@ -1,0 +1,69 @@
+"""The plain lines of a program, in C: blanks, comments, G0 to G3 with axes, I J K R, and F.
+
+In: the text, where to start, and the modal state.  Out: batches of rows to the sink, and the state moved on.  A line
+that is not certainly plain and certainly free of error is left to the interpreter, untouched; what is taken gives the
+sink exactly what the interpreter would have given it.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from trochia.kernels.gcode import OTHER_MOTION, STOP_FULL, PlainReader
+from trochia.languages.gcode.groups.arcs import SHORT_RADIUS, SPIRAL, SPIRAL_MOST, SPIRAL_SHARE
+from trochia.languages.gcode.state import NO_MOTION
+from trochia.program.modes import AXES, TimeLaw
+
+if TYPE_CHECKING:
+    from mmap import mmap
+
+    from trochia.languages.gcode.sink import Sink
+    from trochia.languages.gcode.state import State
+
+
+class FastPath:
+    """Takes the plain lines of one text; ``axes`` are the letters that are axis words, in lower case."""
+
+    __slots__ = ("_reader",)
+
+    def __init__(self, text: bytes | mmap, axes: str) -> None:
+        self._reader = PlainReader(text)
+        self._reader.modal.axes = sum(1 << AXES.index(letter) for letter in axes.upper())
+
+    def advance(self, state: State, sink: Sink, offset: int, line: int) -> tuple[int, int]:
+        """Take plain lines from byte ``offset`` on, where line number ``line`` begins; return both as they are now."""
+        if state.law is not TimeLaw.PER_SECOND:
+            return offset, line
+        modal = self._reader.modal
+        modal.offset, modal.line = offset, line
+        self._load(state)
+        while True:
+            rows = self._reader.read()
+            if len(rows):
+                sink.moves(rows)
+            if modal.stop != STOP_FULL:
+                break
+        if modal.offset != offset:
+            self._store(state)
+        return modal.offset, modal.line
+
+    def _load(self, state: State) -> None:
+        """Set the reader's modes from the state."""
+        modal = self._reader.modal
+        modal.position = state.position
+        modal.feed = state.feed
+        modal.motion = OTHER_MOTION if state.motion == NO_MOTION else state.motion
+        modal.plane = state.plane
+        modal.incremental = not state.absolute
+        modal.centre_absolute = state.arc_absolute
+        modal.least_radius = SHORT_RADIUS[state.inch]
+        modal.spiral = SPIRAL[state.inch]
+        modal.spiral_most = SPIRAL_MOST[state.inch]
+        modal.spiral_share = SPIRAL_SHARE
+
+    def _store(self, state: State) -> None:
+        """Set the state from what the lines taken have changed."""
+        modal = self._reader.modal
+        state.position = list(modal.position)
+        state.feed = modal.feed
+        state.motion = NO_MOTION if modal.motion == OTHER_MOTION else modal.motion
