@@ -82,10 +82,12 @@ class Twin:
         inverse = np.linalg.pinv(matrix)
         start = motion.position(np.zeros(1))[0] @ matrix.T
         joints = [self._joint(joint, at) for joint, at in zip(self.machine.joints, start, strict=True)]
-        # a millionth of a period: 2.1 s of 0.001 s periods are 2100, although the quotient is a little more
+        # a millionth of a period: a duration is a sum, and rounding must not buy it one more sample
         samples = math.ceil(motion.duration / self.tick - 1e-6) + 1
         for first in range(0, samples, BLOCK):
-            t = np.minimum(self.tick * np.arange(first, min(first + BLOCK, samples)), motion.duration)
+            t = self.tick * np.arange(first, min(first + BLOCK, samples))
+            if first + BLOCK >= samples:
+                t[-1] = motion.duration
             commanded = motion.position(t)
             wanted = commanded @ matrix.T
             done = [joint.run(wanted[:, i]) for i, joint in enumerate(joints)]
