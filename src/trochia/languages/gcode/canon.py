@@ -9,15 +9,19 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from trochia.kernels.gcode import COMMENT_ROW, FEED_ROW
+from trochia.languages.gcode.interpreter import interpret
 from trochia.program.modes import MoveKind, PathMode, Plane, TimeLaw
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from pathlib import Path
+    from typing import BinaryIO
 
     from trochia.kernels.gcode import Rows
     from trochia.languages.gcode.sink import Position
 
 _SIX = "(%.4f, %.4f, %.4f, %.4f, %.4f, %.4f)\n"
+_ARC = "ARC_FEED(%.4f, %.4f, %.4f, %.4f, %d, %.4f, %.4f, %.4f, %.4f)\n"
 _PLANES = {Plane.XY: "XY", Plane.YZ: "YZ", Plane.ZX: "XZ"}
 _MODES = {
     PathMode.BLEND_DEFAULT: "CONTINUOUS, %f",
@@ -26,6 +30,22 @@ _MODES = {
     PathMode.EXACT_STOP: "EXACT_STOP",
 }
 _TOOL_OFFSET = "USE_TOOL_LENGTH_OFFSET(%.4f %.4f %.4f, %.4f %.4f %.4f, %.4f %.4f %.4f)\n"
+
+
+def print_text(text: bytes, out: BinaryIO, *, name: str, block_delete: bool = False) -> None:
+    """Write the canonical functions of a program.
+
+    Raises
+    ------
+    ProgramError
+        At the first line that is wrong; what came before it has been written.
+    """
+    interpret(text, Canon(out.write), name=name, block_delete=block_delete)
+
+
+def print_program(path: Path, out: BinaryIO) -> None:
+    """Write the canonical functions of a program file; errors are those of :func:`print_text`."""
+    print_text(path.read_bytes(), out, name=str(path))
 
 
 class Canon:
@@ -49,10 +69,7 @@ class Canon:
     def arc_feed(self, target: Position, centre: tuple[float, float], turns: int, plane: Plane) -> None:
         """Print an arc: end and centre on the plane's axes, turns, height of the end, rotary axes."""
         first, second = plane.axes
-        self._print(
-            "ARC_FEED(%.4f, %.4f, %.4f, %.4f, %d, %.4f, %.4f, %.4f, %.4f)\n"
-            % (target[first], target[second], *centre, turns, target[plane.normal], *target[3:6])
-        )
+        self._print(_ARC % (target[first], target[second], *centre, turns, target[plane.normal], *target[3:6]))
 
     def moves(self, rows: Rows) -> None:
         """Print a batch of the fast path."""

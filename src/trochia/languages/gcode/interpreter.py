@@ -30,14 +30,25 @@ if TYPE_CHECKING:
     OnError = Callable[[ProgramError], None]
 
 AXES = "XYZABC"  #: axis words of the reference's stand-alone interpreter
-_HOME = (0.0,) * 9
+HOME = (0.0,) * 9  #: where a program starts if nobody says otherwise
 _HOW_TO_END = "The program must end with M2 or M30, or with a line % if it begins with one."
 
 
-def interpret(text: bytes | mmap, sink: Sink, *, name: str, **options: object) -> int:
-    """Run a whole program; return its number of lines.  Options and errors are those of :func:`blocks`."""
+def interpret(
+    text: bytes | mmap,
+    sink: Sink,
+    *,
+    name: str,
+    work: WorkState | None = None,
+    start: tuple[float, ...] = HOME,
+    axes: str = AXES,
+    block_delete: bool = False,
+    fast: bool = True,
+) -> int:
+    """Run a whole program and return its number of lines; parameters and errors are those of :func:`blocks`."""
     line = 0
-    for line in blocks(text, sink, name=name, **options):  # type: ignore[arg-type]  # noqa: B007 - the last is wanted
+    walk = blocks(text, sink, name=name, work=work, start=start, axes=axes, block_delete=block_delete, fast=fast)
+    for line in walk:  # noqa: B007 - the last one is wanted
         pass
     return line
 
@@ -48,7 +59,7 @@ def blocks(
     *,
     name: str,
     work: WorkState | None = None,
-    start: tuple[float, ...] = _HOME,
+    start: tuple[float, ...] = HOME,
     axes: str = AXES,
     block_delete: bool = False,
     fast: bool = True,

@@ -1,0 +1,88 @@
+"""``trochia canon``: a program's canonical commands, one per line."""
+
+from __future__ import annotations
+
+import io
+import os
+import sys
+import tempfile
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, BinaryIO
+
+import click
+
+from trochia.cli import options
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+
+@click.command()
+@click.argument("program", metavar="PROGRAM", type=options.type_program)
+@click.option("-o", "--output", type=click.Path(dir_okay=False, writable=True), metavar="FILE",
+              help="Write to a file, whole or not at all, instead of standard output.")  # fmt: skip
+@click.option("--block-delete", is_flag=True, help="Leave out lines that begin with /.")
+@options.as_json
+def command(program: str, output: str | None, block_delete: bool, as_json: bool) -> None:
+    """Print the canonical commands of PROGRAM (- reads standard input).
+
+    They are spelt as LinuxCNC's stand-alone interpreter does (`rs274 -g`, without its first two columns), in program
+    units and coordinates.
+
+    Example: trochia canon programs/contour.ngc
+    """
+    from trochia.languages.gcode.canon import print_text  # noqa: PLC0415 - `trochia --help` must stay light
+
+    name = "<stdin>" if program == "-" else program
+    text = sys.stdin.buffer.read() if program == "-" else Path(program).read_bytes()
+    if as_json:
+        _print_json(text, name, block_delete=block_delete)
+    elif output is not None:
+        with _whole_file(Path(output)) as out:
+            print_text(text, out, name=name, block_delete=block_delete)
+    else:
+        try:
+            print_text(text, sys.stdout.buffer, name=name, block_delete=block_delete)
+            sys.stdout.flush()
+        except BrokenPipeError:  # the reader has seen enough
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _print_json(text: bytes, name: str, *, block_delete: bool) -> None:
+    """Print ``{ok, commands, problems}``; a rejected program has the commands before its first wrong line."""
+    from dataclasses import asdict  # noqa: PLC0415 - as above
+
+    from trochia.analysis.problems import from_error  # noqa: PLC0415 - as above
+    from trochia.errors import ProgramError  # noqa: PLC0415 - as above
+    from trochia.languages.gcode.canon import print_text  # noqa: PLC0415 - as above
+
+    out, problems = io.BytesIO(), []
+    try:
+        print_text(text, out, name=name, block_delete=block_delete)
+    except ProgramError as error:
+        problems = [asdict(from_error(error, name))]
+    commands = out.getvalue().decode("latin-1").split("\n")[:-1]
+    options.print_json({"ok": not problems, "commands": commands, "problems": problems})
+    if problems:
+        sys.exit(1)
+
+
+@contextmanager
+def _whole_file(path: Path) -> Iterator[BinaryIO]:
+    """Give a file that takes its name only when all of it is written."""
+    with tempfile.NamedTemporaryFile(dir=path.parent, prefix=path.name, delete=False) as out:
+        try:
+            yield out  # type: ignore[misc]
+        except BaseException:
+            Path(out.name).unlink()
+            raise
+    Path(out.name).chmod(0o666 & ~_umask())
+    Path(out.name).replace(path)
+
+
+def _umask() -> int:
+    """Return the mask new files are made with, which Python can only tell by setting it."""
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
