@@ -114,9 +114,8 @@ def _check_rate(joint: Joint, rate: float | None, velocity: float) -> None:
         fits = velocity * greatest / rate
         raise ConfigError(
             f"at {velocity:g} a second the joint needs {rate:.6g} steps/s, its {why} {greatest:.6g}",
-            key=f"joints.{joint.name}",
-            hint=f"Lower the axis' velocity or give the joint velocity {fits:.6g} a second at most; "
-            "or fewer microsteps, or a faster driver.",
+            key=f"joints.{joint.name}.velocity",
+            hint=f"Give the joint (or its axis) at most {fits:.6g} a second, or fewer microsteps, or a faster driver.",
         )
 
 

@@ -88,26 +88,45 @@ def _find(name: str) -> tuple[str, str]:
     looks_like_path = name.endswith(".toml") or "/" in name or "\\" in name or Path(name).is_file()
     if looks_like_path:
         path = Path(name)
-        return name, _decode(name, _read_bytes(path))
+        return name, _decode(name, _read_bytes(path, "the machine file"))
     if name in shipped():
         entry = _folder() / f"{name}.toml"
         return f"{name}.toml", entry.read_text(encoding="utf-8")
+    beside = f"There is a file of that name: {name}.toml" if Path(f"{name}.toml").is_file() else None
     raise ConfigError(f"no machine is called {name!r}; those that come with Trochia are {', '.join(shipped())}",
-                      hint=did_you_mean(name, shipped())
+                      hint=beside or did_you_mean(name, shipped())
                       or "A machine of your own is given by its path: ./mill.toml")  # fmt: skip
 
 
-def _read_bytes(path: Path) -> bytes:
+def read_text(path: Path) -> str:
+    """Return the text of another controller's settings; bytes that are not UTF-8 are taken as Latin-1.
+
+    Raises
+    ------
+    ConfigError
+        When the file cannot be read, or is binary.
+    """
+    data = _read_bytes(path, "the settings")
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        text = data.decode("latin-1")
+    if "\0" in text:
+        raise ConfigError(f"{path}: expected settings as text, found binary data")
+    return text
+
+
+def _read_bytes(path: Path, what: str) -> bytes:
     """Return a file's content, or say why not."""
     try:
         if path.is_file() and path.stat().st_size > _LARGEST:
-            raise ConfigError(f"{path}: expected a machine file, this has {path.stat().st_size} bytes")
+            raise ConfigError(f"{path}: expected {what}, this has {path.stat().st_size} bytes")
         return path.read_bytes()
     except OSError as error:
         hint = None
         if path.stem in shipped():
             hint = f"The one that comes with Trochia is given by its bare name: {path.stem}"
-        raise ConfigError(f"{path}: cannot read the machine file: {error.strerror or error}", hint=hint) from None
+        raise ConfigError(f"{path}: cannot read {what}: {error.strerror or error}", hint=hint) from None
 
 
 def _decode(file: str, data: bytes) -> str:
