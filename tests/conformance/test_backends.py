@@ -39,6 +39,9 @@ class Swing:
     def line_at(self, t):
         return np.where(t < self.duration / 2, 7, 11)
 
+    def power_at(self, t):
+        return np.where(t < self.duration / 2, 0.0, 80.0)
+
 
 @pytest.fixture(params=MACHINES)
 def machine(request):
@@ -84,6 +87,9 @@ def test_commanded_equals_the_motion_at_every_sample(recording, machine, motion)
     np.testing.assert_array_equal(of(recording, machine, "commanded"), motion.position(t))
     np.testing.assert_array_equal(recording["path.line"], motion.line_at(t))
     np.testing.assert_allclose(recording["path.speed"], motion.path_speed(t))
+    assert ("beam" in recording) == (machine.beam is not None)
+    if machine.beam:
+        np.testing.assert_array_equal(recording["beam"], motion.power_at(t))
 
 
 def test_motion_ends_where_it_was_commanded_within_resolution_and_play(recording, machine, motion):

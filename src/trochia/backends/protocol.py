@@ -38,6 +38,10 @@ class Motion(Protocol):
         """Return the source line of the motion (samples,)."""
         ...
 
+    def power_at(self, t: NDArray[np.float64], /) -> NDArray[Any]:
+        """Return the power of the beam (samples,), as S gave it, 0 off; asked of machines with a beam."""
+        ...
+
 
 class SegmentBackend(Protocol):
     """Carries out a motion on one machine and records it.

@@ -85,7 +85,7 @@ class Twin:
         # a millionth of a period: a duration is a sum, and rounding must not buy it one more sample
         samples = math.ceil(motion.duration / self.tick - 1e-6) + 1
         for first in range(0, samples, BLOCK):
-            t = self.tick * np.arange(first, min(first + BLOCK, samples))
+            t = self.tick * np.arange(first, min(first + BLOCK, samples), dtype=np.float64)
             if first + BLOCK >= samples:
                 t[-1] = motion.duration
             commanded = motion.position(t)
@@ -97,6 +97,7 @@ class Twin:
                 **self._joint_samples(done),
                 "path.speed": motion.path_speed(t),
                 "path.line": np.asarray(motion.line_at(t), np.uint32),
+                **({"beam": motion.power_at(t)} if self.machine.beam else {}),
             }
 
     def _joint(self, joint: Joint, command: float) -> TwinJoint:
@@ -126,6 +127,8 @@ class Twin:
             yield Channel(name=f"joint.{joint.name}.actual", unit=unit)
         yield Channel(name="path.speed", unit="mm/s")
         yield Channel(name="path.line", dtype="<u4")
+        if self.machine.beam:
+            yield Channel(name="beam", dtype="<f4")
 
     def _axis_samples(self, commanded: NDArray[np.float64], actual: NDArray[np.float64]) -> dict[str, NDArray[Any]]:
         samples: dict[str, NDArray[Any]] = {}

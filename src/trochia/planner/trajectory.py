@@ -103,6 +103,18 @@ class Trajectory:
         moves = self.path.segments["move"][self.states(times)["segment"]]
         return self.program.moves["line"][moves]
 
+    def power_at(self, times: ArrayLike) -> NDArray[np.float32]:
+        """Return the beam's power or the spindle's S at each time (times,), 0 off.
+
+        It is that of the move under way; at rest, that with which the next move begins, 0 after the last.
+        """
+        if self.schedule is None:
+            return np.zeros(len(np.atleast_1d(np.asarray(times))), dtype=np.float32)
+        states = self.states(times)
+        segments = np.append(self.program.moves["power"][self.path.segments["move"]], np.float32(0.0))
+        waiting = (states["flags"] & 1 == 1) & (states["s"] > 0.0)
+        return segments[states["segment"] + waiting]
+
     @property
     def move_times(self) -> NDArray[np.float64]:
         """Time in motion of each of the program's moves (moves,) [s]; a blend counts to the move it enters."""
