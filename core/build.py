@@ -19,6 +19,8 @@ HEADERS = [
     "host/path.h",
     "host/plan.h",
     "host/steps.h",
+    "shared/interpolate.h",
+    "host/interpolate.h",
     "host/gcode.h",
     "host/twin.h",
     "host/contour.h",
@@ -42,6 +44,7 @@ def make_builder() -> FFI:
         "trochia._core",
         "\n".join(f'#include "{header}"' for header in HEADERS),
         sources=sources,
+        depends=sorted(str(path.relative_to(ROOT)) for path in CORE.glob("*/*.h")),
         include_dirs=[str(CORE)],
         # cffi's own glue is not ours to warn about
         extra_compile_args=[*FLAGS, "-Wno-conversion", *os.environ.get("TROCHIA_CFLAGS", "").split()],

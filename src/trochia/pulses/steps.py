@@ -1,0 +1,143 @@
+"""Exact step timing: a trajectory in, each joint's steps out, as whole ticks of a clock.
+
+In: phases of constant jerk over a path, a machine (kinematics, steps a mm or degree), a clock.
+Out: ``StepBlock`` after ``StepBlock``: for every joint the tick and the direction of each step.
+
+A step that brings the joint's count to k falls where its position is k steps, whichever way it comes: the count is
+always less than one step from the position, equal to it on a whole step, and turning round within a step makes no step
+at all.  Every time is found from the trajectory itself, not from the step before, so nothing drifts however long it is.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from trochia.errors import ConfigError
+from trochia.kernels.steps import JointSteps
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from numpy.typing import NDArray
+
+    from trochia.machine.machine import Machine
+
+CLOCK = 16_000_000  #: ticks a second [Hz]: that of the smallest controller board, which divides it no further
+WINDOW = 0.1  #: longest block [s]: work enough a call, and a few hundred kB at a hundred thousand steps a second
+
+
+class Path(Protocol):
+    """Segments and their coefficients (``core/host/path.h``) in the machine's axes."""
+
+    @property
+    def segments(self) -> NDArray[np.void]:
+        """SEGMENT rows (segments,)."""
+        ...
+
+    @property
+    def pool(self) -> NDArray[np.float64]:
+        """Coefficients (n,)."""
+        ...
+
+
+class Motion(Protocol):
+    """What step timing asks of a trajectory."""
+
+    @property
+    def toolpath(self) -> Path:
+        """The path it runs over."""
+        ...
+
+    def blocks(self) -> Iterable[NDArray[np.void]]:
+        """Give PHASE rows in the order of time, block by block."""
+        ...
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StepBlock:
+    """The steps of all joints in a window of time.
+
+    Attributes
+    ----------
+    start, end
+        The window [ticks]; a step belongs to the window its exact time lies in, so a rounded tick may equal ``end``.
+    clock
+        Ticks a second [Hz].
+    counts
+        Each joint's position before the window [steps].
+    ticks, directions
+        For each joint, when each step is (steps,) [ticks], strictly rising, and which way: +1 or -1.
+    phases
+        The PHASE rows the window belongs to.
+    """
+
+    start: int
+    end: int
+    clock: int
+    counts: tuple[int, ...]
+    ticks: tuple[NDArray[np.int64], ...]
+    directions: tuple[NDArray[np.int8], ...]
+    phases: NDArray[np.void]
+
+
+def step_rows(machine: Machine) -> NDArray[np.float64]:
+    """Return steps of each joint a mm or degree of each axis (joints, axes); a servo's row is zero."""
+    per_unit = [float(joint.steps_per_unit or 0) for joint in machine.joints]
+    return machine.kinematics.matrix * np.array(per_unit)[:, None]
+
+
+def step_blocks(
+    trajectory: Motion, machine: Machine, *, clock: int = CLOCK, counts: tuple[int, ...] | None = None
+) -> Iterator[StepBlock]:
+    """Yield the steps of every joint of ``machine`` along ``trajectory``, window by window.
+
+    Parameters
+    ----------
+    trajectory
+        Phases and the path they run over.
+    machine
+        Its kinematics and steppers; a servo joint's arrays are empty.
+    clock
+        Ticks a second [Hz].
+    counts
+        Where each joint stands at the start [steps]; None: on the whole step nearest to the first position.
+
+    Raises
+    ------
+    ConfigError
+        For a clock below one tick a second.
+    """
+    if clock < 1:
+        raise ConfigError(f"a step clock has at least one tick a second, not {clock!r}")
+    path = trajectory.toolpath
+    rows = step_rows(machine)
+    begins: tuple[int | None, ...] = (None,) * len(rows) if counts is None else counts
+    joints = [JointSteps(path.segments, path.pool, row, clock, begin) for row, begin in zip(rows, begins, strict=True)]
+    for phases in trajectory.blocks():
+        if phases.size:
+            yield from _windows(phases, joints, clock)
+
+
+def _windows(phases: NDArray[np.void], joints: list[JointSteps], clock: int) -> Iterator[StepBlock]:
+    """Yield a block of phases cut into windows."""
+    for joint in joints:
+        joint.load(phases)
+    start, end = float(phases["t"][0]), float(phases["t"][-1] + phases["duration"][-1])
+    borders = np.linspace(start, end, max(1, int(np.ceil((end - start) / WINDOW))) + 1)
+    owners = np.searchsorted(phases["t"], borders, side="right") - 1
+    for number in range(1, borders.size):
+        counts = tuple(joint.count for joint in joints)
+        until = np.inf if number == borders.size - 1 else borders[number] * clock
+        steps = [joint.until(until) for joint in joints]
+        yield StepBlock(
+            start=round(borders[number - 1] * clock),
+            end=round(borders[number] * clock),
+            clock=clock,
+            counts=counts,
+            ticks=tuple(ticks for ticks, _ in steps),
+            directions=tuple(directions for _, directions in steps),
+            phases=phases[owners[number - 1] : owners[number] + 1],
+        )
