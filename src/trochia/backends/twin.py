@@ -1,7 +1,7 @@
 """The digital twin, first level: ideal motors, transmissions with backlash, encoders, on a clock of its own.
 
 In: a motion and a machine.  Out: blocks of three independent signals, the commanded position, what the encoders count,
-and where the axes really are; ``docs/reference/recording.md`` lists the channels.
+and where the axes really are; ``signals.py`` has a row for each channel.
 
 ``axes --kinematics--> joint command --motor--> motor --backlash--> load --pseudo-inverse--> axes``
 
@@ -17,10 +17,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from trochia.backends.signals import Sampled, signals
 from trochia.errors import ConfigError
 from trochia.kernels.twin import TwinJoint
-from trochia.machine.axes import AxisKind
-from trochia.recorder import Channel, Header
+from trochia.recorder import Header
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from trochia.backends.protocol import Motion
-    from trochia.kernels.twin import TwinBlock
     from trochia.machine.joints import Joint
     from trochia.machine.machine import Machine
 
@@ -73,7 +72,7 @@ class Twin:
             machine=self.machine.name,
             program=program,
             origin=f"twin of ideal joints, slack {self.slack:g}",
-            channels=tuple(self._channels()),
+            channels=tuple(channel for channel, _ in signals(self.machine)),
         )
 
     def run(self, motion: Motion) -> Iterator[Mapping[str, NDArray[Any]]]:
@@ -82,6 +81,7 @@ class Twin:
         inverse = np.linalg.pinv(matrix)
         start = motion.position(np.zeros(1))[0] @ matrix.T
         joints = [self._joint(joint, at) for joint, at in zip(self.machine.joints, start, strict=True)]
+        recorded = list(signals(self.machine))
         # a millionth of a period: a duration is a sum, and rounding must not buy it one more sample
         samples = math.ceil(motion.duration / self.tick - 1e-6) + 1
         for first in range(0, samples, BLOCK):
@@ -92,13 +92,8 @@ class Twin:
             wanted = commanded @ matrix.T
             done = [joint.run(wanted[:, i]) for i, joint in enumerate(joints)]
             actual = np.stack([block.load for block in done], axis=1) @ inverse.T
-            yield {
-                **self._axis_samples(commanded, actual),
-                **self._joint_samples(done),
-                "path.speed": motion.path_speed(t),
-                "path.line": np.asarray(motion.line_at(t), np.uint32),
-                **({"beam": motion.power_at(t)} if self.machine.beam else {}),
-            }
+            block = Sampled(t=t, motion=motion, commanded=commanded, actual=actual, joints=done)
+            yield {channel.name: take(block) for channel, take in recorded}
 
     def _joint(self, joint: Joint, command: float) -> TwinJoint:
         return TwinJoint(
@@ -110,40 +105,3 @@ class Twin:
             backlash=joint.backlash,
             slack=self.slack,
         )
-
-    def _channels(self) -> Iterator[Channel]:
-        """Yield every channel, in the order of the file."""
-        units = ["mm" if axis.kind is AxisKind.LINEAR else "degree" for axis in self.machine.axes]
-        for quantity in ("commanded", "actual"):
-            for axis, unit in zip(self.machine.axes, units, strict=True):
-                yield Channel(name=f"{axis.name}.{quantity}", unit=unit)
-        for joint, row in zip(self.machine.joints, self.machine.kinematics.matrix, strict=True):
-            unit = units[int(np.argmax(np.abs(row)))]
-            if joint.steps_per_unit is not None:
-                yield Channel(name=f"joint.{joint.name}.steps", unit="step", dtype="<i8")
-            yield Channel(name=f"joint.{joint.name}.motor", unit=unit)
-            if joint.encoder is not None:
-                yield Channel(name=f"joint.{joint.name}.counts", unit="count", dtype="<i8")
-            yield Channel(name=f"joint.{joint.name}.actual", unit=unit)
-        yield Channel(name="path.speed", unit="mm/s")
-        yield Channel(name="path.line", dtype="<u4")
-        if self.machine.beam:
-            yield Channel(name="beam", dtype="<f4")
-
-    def _axis_samples(self, commanded: NDArray[np.float64], actual: NDArray[np.float64]) -> dict[str, NDArray[Any]]:
-        samples: dict[str, NDArray[Any]] = {}
-        for i, axis in enumerate(self.machine.axes):
-            samples[f"{axis.name}.commanded"] = commanded[:, i]
-            samples[f"{axis.name}.actual"] = actual[:, i]
-        return samples
-
-    def _joint_samples(self, done: list[TwinBlock]) -> dict[str, NDArray[Any]]:
-        samples: dict[str, NDArray[Any]] = {}
-        for joint, block in zip(self.machine.joints, done, strict=True):
-            name = f"joint.{joint.name}"
-            samples |= {f"{name}.motor": block.motor, f"{name}.actual": block.load}
-            if joint.steps_per_unit is not None and block.position is not None:
-                samples[f"{name}.steps"] = block.position
-            if block.counts is not None:
-                samples[f"{name}.counts"] = block.counts
-        return samples
