@@ -45,6 +45,7 @@ class FastPath:
                 break
         if modal.offset != offset:
             self._store(state)
+            sink.line = modal.line - 1
         return modal.offset, modal.line
 
     def _load(self, state: State) -> None:
