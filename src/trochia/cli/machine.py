@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from trochia.cli import machine_new, machine_show
+from trochia.cli import machine_show
 from trochia.cli.machine_file import apply_changes, force, output, problem_data, settings, write_whole
 from trochia.cli.options import as_json, print_json
 from trochia.errors import ConfigError
 from trochia.machine.draft import machine_of
 from trochia.machine.dump import dumps
-from trochia.machine.importers import IMPORTERS, Imported, detect
+from trochia.machine.importers import IMPORTERS, NO_PLACE, Imported, detect
 from trochia.machine.load import inspect, load, read_text, shipped
 
 if TYPE_CHECKING:
@@ -140,9 +140,9 @@ def _report(imported: Imported, title: str, file: Path) -> None:
     click.echo(f"{file}: {title}", err=True)
     for sentence in imported.assumed:
         click.echo(f"  assumed: {sentence}", err=True)
+    if imported.unmapped:
+        click.echo("  not mapped, as there is no place for them in a machine file (or for the reason given):", err=True)
     for each in imported.unmapped:
         value = f" = {' '.join(each.setting.value.split())[:60]}" if each.setting.value else ""
-        click.echo(f"  not mapped: line {each.setting.line}: {each.setting.full_name}{value} ({each.why})", err=True)
-
-
-command.add_command(machine_new.command, "new")
+        why = "" if each.why == NO_PLACE else f" ({each.why})"
+        click.echo(f"    line {each.setting.line}: {each.setting.full_name}{value}{why}", err=True)

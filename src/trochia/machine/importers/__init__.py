@@ -6,7 +6,7 @@ from trochia.errors import ConfigError, Source
 from trochia.machine.importers.grbl import GRBL
 from trochia.machine.importers.klipper import KLIPPER
 from trochia.machine.importers.linuxcnc import LINUXCNC
-from trochia.machine.importers.report import Imported, Importer, Setting, Unmapped
+from trochia.machine.importers.report import NO_PLACE, Imported, Importer, Setting, Unmapped
 
 #: asked in this order when nobody says what a file is
 IMPORTERS: dict[str, Importer] = {importer.kind: importer for importer in (GRBL, KLIPPER, LINUXCNC)}
@@ -28,4 +28,4 @@ def detect(text: str, file: str) -> Importer:
                       hint=f"Say what it is: --from {'|'.join(IMPORTERS)}.")  # fmt: skip
 
 
-__all__ = ["IMPORTERS", "Imported", "Importer", "Setting", "Unmapped", "detect"]
+__all__ = ["IMPORTERS", "NO_PLACE", "Imported", "Importer", "Setting", "Unmapped", "detect"]

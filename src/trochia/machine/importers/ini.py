@@ -35,7 +35,7 @@ def settings(text: str, *, separators: str, inline_comments: str = "", continued
         bare = _without_comment(line, inline_comments)
         header = _SECTION.match(bare)
         if bare.startswith(_ACTING_COMMENTS):
-            found.append(Setting(section=section, name=bare.strip(), value="", line=number))
+            found.append(Setting(section="", name=bare.strip(), value="", line=number))
         elif not bare.strip() or bare.lstrip()[0] in "#;":
             continue
         elif header:

@@ -38,7 +38,7 @@ def read(text: str, file: str) -> Imported:
             _axis(settings, result, name, match.group(1).upper(), printer)
     for name, match in _belts_first(steppers).items():
         _joint(settings, result, name, match.group(1).upper(), match.group(2))
-    result.assumed.append("each axis' own velocity and acceleration: those Klipper gives along the path")
+    result.assume("each axis' own velocity and acceleration: those Klipper gives along the path")
     result.unmapped = settings.unmapped()
     return result
 
@@ -95,14 +95,14 @@ def _axis(settings: Settings, result: Imported, section: str, letter: str, limit
 
 
 def _joint(settings: Settings, result: Imported, section: str, letter: str, number: str) -> None:
-    """Write one stepper; what a second one leaves out it has from the first of its axis, as in Klipper."""
+    """Write one stepper; a numbered one helps the axis of its letter."""
     full_steps = settings.number(section, "full_steps_per_rotation")
     microsteps = settings.number(section, "microsteps")
     stepper: dict[str, Any] = {"kind": "stepper", "full_steps": int(full_steps or 200)}
     transmission = _transmission(settings, section)
     if microsteps:
         stepper["microsteps"] = int(microsteps)
-    elif transmission is None:
+    else:
         transmission = _step_distance(settings, result, section, stepper)
     if transmission is None:
         raise settings.missing(section, "rotation_distance and microsteps")
@@ -112,6 +112,9 @@ def _joint(settings: Settings, result: Imported, section: str, letter: str, numb
     joint: dict[str, Any] = {"motor": stepper, "transmission": transmission}
     if pulse := settings.number(section, "step_pulse_duration"):
         joint["pulses"] = {"length": quantity(pulse, "s")}
+    elif any(name.startswith("tmc") and name.endswith(f" {section}") for name in settings.sections()):
+        joint["pulses"] = {"length": "100 ns", "space": "100 ns"}
+        result.assume("pulses of 100 ns for TMC drivers, as Klipper gives them")
     belt = result.document["kinematics"] == "corexy" and letter in "XY"
     if belt and number:
         raise settings.missing(section, "no second motor on a belt", hint="Such a corexy cannot be imported yet.")
@@ -144,7 +147,7 @@ def _step_distance(
     distance = settings.number(section, "step_distance")
     if not distance:
         return None
-    result.assumed.append(f"[{section}]: {stepper['full_steps']} pulses a turn; only step_distance is known, and exact")
+    result.assume(f"[{section}]: {stepper['full_steps']} pulses a turn; only step_distance is known, and exact")
     return {"kind": "travel", "per_turn": exact(distance * stepper["full_steps"], "mm")}
 
 

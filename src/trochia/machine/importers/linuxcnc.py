@@ -14,7 +14,7 @@ from typing import Any
 from trochia.errors import ConfigError, Source
 from trochia.machine.axes import LETTERS
 from trochia.machine.importers import ini
-from trochia.machine.importers.report import Imported, Importer, Settings, exact, quantity
+from trochia.machine.importers.report import Imported, Importer, Setting, Settings, Unmapped, exact, quantity
 from trochia.units import render_fraction
 
 _PULSES_PER_TURN = 200
@@ -54,9 +54,14 @@ def read(text: str, file: str) -> Imported:
         _joint(settings, result, index, letter, _unit(letter, linear))
     _path(settings, result, linear)
     _spindle(settings, result)
+    angle = settings.take("TRAJ", "ANGULAR_UNITS")
+    if angle and not angle.value.lower().startswith("deg"):
+        raise settings.error(
+            angle, f"expected degree, not {angle.value!r}", hint="Other angles cannot be imported yet."
+        )
     if name := settings.take("EMC", "MACHINE"):
         result.document["description"] = name.value
-    result.unmapped = settings.unmapped()
+    result.unmapped = sorted(result.unmapped + settings.unmapped(), key=lambda each: each.setting.line)
     return result
 
 
@@ -69,7 +74,7 @@ def _linear_unit(settings: Settings, result: Imported) -> _Unit:
     """Return mm or inch."""
     setting = settings.take("TRAJ", "LINEAR_UNITS")
     if setting is None:
-        result.assumed.append("lengths in mm: [TRAJ]LINEAR_UNITS is not there")
+        result.assume("lengths in mm: [TRAJ]LINEAR_UNITS is not there")
         return _Unit("mm", Fraction(1))
     word = setting.value.split()[0].lower() if setting.value else ""
     if word in {"mm", "metric"}:
@@ -84,7 +89,7 @@ def _kinematics(settings: Settings, result: Imported) -> list[str]:
     setting = settings.take("KINS", "KINEMATICS")
     words = setting.value.split() if setting and setting.value else ["trivkins"]
     if setting is None:
-        result.assumed.append("kinematics cartesian: [KINS]KINEMATICS is not there")
+        result.assume("kinematics cartesian: [KINS]KINEMATICS is not there")
     if words[0] not in _KINEMATICS:
         assert setting is not None
         raise settings.error(setting, f"expected one of {', '.join(_KINEMATICS)}, not {words[0]!r}",
@@ -92,6 +97,10 @@ def _kinematics(settings: Settings, result: Imported) -> list[str]:
     lathe = settings.take("DISPLAY", "LATHE")
     is_lathe = lathe is not None and lathe.value.lower() in {"1", "yes", "true"}
     result.document["kinematics"] = "lathe" if is_lathe else _KINEMATICS[words[0]]
+    for word in words[1:]:
+        if setting and not word.lower().startswith("coordinates="):
+            rest = Setting(section="KINS", name="KINEMATICS", value=word, line=setting.line)
+            result.unmapped.append(Unmapped(setting=rest, why="only its coordinates= is taken"))
     named = next((word.partition("=")[2] for word in words[1:] if word.lower().startswith("coordinates=")), "")
     coordinates = settings.take("TRAJ", "COORDINATES")
     letters = [c for c in (named or (coordinates.value if coordinates else "XYZ")).upper() if not c.isspace()]
@@ -105,7 +114,7 @@ def _joint_letters(settings: Settings, result: Imported, letters: list[str]) -> 
     """Return the letter of each joint, as many as [KINS]JOINTS says."""
     count = settings.number("KINS", "JOINTS")
     if count is not None and int(count) != len(letters):
-        result.assumed.append(f"{len(letters)} joints, one for each coordinate: [KINS]JOINTS says {count}")
+        result.assume(f"{len(letters)} joints, one for each coordinate: [KINS]JOINTS says {count}")
     settings.take("TRAJ", "AXES")  # the older files' count
     return letters
 
@@ -142,6 +151,9 @@ def _joint(settings: Settings, result: Imported, index: int, letter: str, unit: 
     if backlash := settings.number(section, "BACKLASH"):
         joint["backlash"] = quantity(backlash, unit.name)
     if has_own:
+        for name in ("MIN_LIMIT", "MAX_LIMIT"):
+            if settings.find(f"AXIS_{letter}", name):
+                settings.leave(section, name, "the travel of the axis binds")
         for key, name, tail in (("velocity", "MAX_VELOCITY", "/s"), ("acceleration", "MAX_ACCELERATION", "/s²")):
             if limit := settings.number(section, name):
                 joint[key] = quantity(limit, f"{unit.name}{tail}")
@@ -158,6 +170,8 @@ def _joint(settings: Settings, result: Imported, index: int, letter: str, unit: 
 
 def _drive(settings: Settings, result: Imported, section: str, unit: _Unit) -> dict[str, Any]:
     """Return motor, transmission and encoder, by the scales the section gives."""
+    for name in ("P", "I", "D", "FF0", "FF1", "FF2", "OUTPUT_SCALE"):
+        settings.leave(section, name, "of the servo loop, not of the machine")
     settings.leave(section, "STEPGEN_MAXVEL", "head-room of the step generator; here the axis' own limits bind")
     settings.leave(section, "STEPGEN_MAXACCEL", "head-room of the step generator; here the axis' own limits bind")
     stepped = any(settings.find(section, name) for name in _STEPPED)
@@ -169,9 +183,9 @@ def _drive(settings: Settings, result: Imported, section: str, unit: _Unit) -> d
         encoder = {"encoder": {"counts": render_fraction(counts / unit.size), "on_load": True}}
     scale = settings.number(section, "STEP_SCALE", "SCALE", "INPUT_SCALE") if stepped or not counted else None
     if not scale:
-        result.assumed.append(f"[{section}] says nothing of its screw: a servo, 1 {unit.name} a turn")
+        result.assume(f"[{section}] says nothing of its screw: a servo, 1 {unit.name} a turn")
         return {"motor": {"kind": "servo"}, "transmission": {"kind": "travel", "per_turn": f"1 {unit.name}"}, **encoder}
-    result.assumed.append(f"[{section}]: {_PULSES_PER_TURN} pulses a turn of the motor; the steps a unit are exact")
+    result.assume(f"{_PULSES_PER_TURN} pulses a turn of each stepper; the steps a unit are known, and exact")
     travel = exact(_PULSES_PER_TURN * unit.size / abs(scale), "deg" if unit is _DEGREE else "mm")
     transmission: dict[str, Any] = {"kind": "travel", "per_turn": travel}
     if scale < 0:

@@ -13,6 +13,9 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
 
+NO_PLACE = "no place in a machine file"  #: why most settings of other controllers are not mapped
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Setting:
     """One setting of a foreign file: section (empty where there are none), name, value as text, line from 1."""
@@ -51,6 +54,11 @@ class Imported:
     document: dict[str, Any] = field(default_factory=dict[str, Any])
     unmapped: list[Unmapped] = field(default_factory=list[Unmapped])
     assumed: list[str] = field(default_factory=list[str])
+
+    def assume(self, sentence: str) -> None:
+        """Note an assumption, once."""
+        if sentence not in self.assumed:
+            self.assumed.append(sentence)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -125,7 +133,7 @@ class Settings:
     def unmapped(self) -> list[Unmapped]:
         """Return what nobody took, in the file's order."""
         return [
-            Unmapped(setting=setting, why=self._why.get(id(setting), "no place in a machine file"))
+            Unmapped(setting=setting, why=self._why.get(id(setting), NO_PLACE))
             for setting in self._settings
             if id(setting) not in self._taken
         ]
