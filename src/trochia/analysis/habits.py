@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from trochia.analysis.problems import Problem, Severity
+from trochia.analysis.problems import Problem, Severity, more_lines
 from trochia.program import Dwell, MoveKind, Pause, Spindle, ToolChange
 
 if TYPE_CHECKING:
@@ -82,8 +82,7 @@ def _lit_rests(program: Program) -> Iterable[int]:
 
 def _warn(program: Program, code: str, lines: list[int], message: str, hint: str) -> Problem:
     """Return one warning for all lines of a kind."""
-    others = sorted(set(lines[1:]) - {lines[0]})
-    more = f" (and on {len(others)} more line{'s' if len(others) > 1 else ''})" if others else ""
+    more = more_lines(len(set(lines)) - 1)
     return Problem(
         severity=Severity.WARNING, code=code, file=program.name, line=lines[0], message=message + more, hint=hint
     )

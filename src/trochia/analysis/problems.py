@@ -43,6 +43,22 @@ class Problem:
             lines.append(f"  {self.hint}")
         return "\n".join(lines)
 
+    def figures(self) -> dict[str, str | int]:
+        """Return what a script gets: severity, code, file, line, column, message."""
+        return {
+            "severity": self.severity.value,
+            "code": self.code,
+            "file": self.file,
+            "line": self.line,
+            "column": self.column,
+            "message": self.message,
+        }
+
+
+def more_lines(others: int) -> str:
+    """Return " (and on 3 more lines)", or nothing for none."""
+    return f" (and on {others} more line{'s' if others > 1 else ''})" if others else ""
+
 
 def from_error(error: TrochiaError, file: str) -> Problem:
     """Return the problem an exception reports."""

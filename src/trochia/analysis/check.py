@@ -1,0 +1,86 @@
+"""Will it run?  In: a plan.  Out: its problems, errors first, each at its line.
+
+Language is judged before there is a plan (:func:`trochia.languages.gcode.problems`); here it is what the machine says:
+travel, feeds it cannot reach, and legal mistakes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from trochia.analysis.habits import warnings
+from trochia.analysis.margins import margins
+from trochia.analysis.problems import Problem, Severity, from_error, more_lines
+from trochia.analysis.travel import travel_error
+
+if TYPE_CHECKING:
+    from typing import Any
+
+    from trochia.analysis.plan import Plan
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Verdict:
+    """The answer to "will it run": problems, and the plan where there is one.
+
+    Attributes
+    ----------
+    more
+        How many errors there are beyond those in ``problems``.
+    """
+
+    problems: tuple[Problem, ...]
+    plan: Plan | None = None
+    more: int = 0
+
+    @property
+    def ok(self) -> bool:
+        """Whether nothing stops it; warnings do not."""
+        return not any(problem.severity is Severity.ERROR for problem in self.problems)
+
+    @property
+    def time_s(self) -> float | None:
+        """Whole time [s]; None where there is no plan."""
+        return None if self.plan is None else self.plan.time_s
+
+    def figures(self) -> dict[str, Any]:
+        """Return what `trochia check --json` prints."""
+        return {
+            "ok": self.ok,
+            "time_s": self.time_s,
+            "problems": [problem.figures() for problem in self.problems],
+            "more_errors": self.more,
+            "margins": {} if self.plan is None else margins(self.plan),
+        }
+
+
+def judge(plan: Plan) -> Verdict:
+    """Return the verdict on a plan."""
+    problems = [*warnings(plan.program, plan.machine), *_slowed(plan)]
+    outside = travel_error(plan)
+    if outside is not None:
+        problems.insert(0, from_error(outside, plan.program.name))
+    return Verdict(problems=tuple(problems), plan=plan)
+
+
+def _slowed(plan: Plan) -> list[Problem]:
+    """Return one warning for the feeds that the machine's velocity limits do not allow."""
+    rows = plan.trajectory.slowed
+    if not len(rows):
+        return []
+    lines = np.unique(plan.program.moves["line"][rows])
+    first = plan.program.moves[rows[0]]
+    more = more_lines(len(lines) - 1)
+    return [
+        Problem(
+            severity=Severity.WARNING,
+            code="feed-slowed",
+            file=plan.program.name,
+            line=int(first["line"]),
+            message=f"the feed is above what the machine's velocity limits allow and is slowed{more}",
+            hint="Nothing is wrong with the part; only the time is longer than the feed says.",
+        )
+    ]

@@ -1,0 +1,35 @@
+"""How much of each joint's limits a plan leaves unused.
+
+In: a plan.  Out: for each joint the unused part of its speed and step rate, as fractions (0.25: a quarter is left;
+below zero: over the limit).  Torque is None until the joint's motor has a torque curve.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from trochia.analysis.plan import Plan
+
+Margins = dict[str, float | None]
+
+
+def margins(plan: Plan) -> dict[str, Margins]:
+    """Return {joint: {"torque", "speed", "step_rate"}}; None where the machine gives no limit."""
+    machine, peaks = plan.machine, plan.trajectory.peaks
+    axis_peaks = np.array([peaks[axis.name]["velocity"] or 0.0 for axis in machine.axes])
+    axis_limits = np.array([axis.velocity for axis in machine.axes])
+    result: dict[str, Margins] = {}
+    for joint, row in zip(machine.joints, np.abs(machine.kinematics.matrix), strict=True):
+        # a joint of several axes is at most as fast as all of them together
+        speed = float(row @ axis_peaks)
+        limit = min(joint.velocity or np.inf, float(row @ axis_limits))
+        rate = None if joint.steps_per_unit is None else speed * abs(float(joint.steps_per_unit))
+        result[joint.name] = {
+            "torque": None,
+            "speed": 1.0 - speed / limit,
+            "step_rate": None if rate is None or joint.pulse_rate is None else 1.0 - rate / joint.pulse_rate,
+        }
+    return result

@@ -1,0 +1,116 @@
+"""A planned job and what it measures.
+
+In: a program and a machine.  Out: a :class:`Plan`: path, trajectory, and the figures that `trochia plan` prints.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from trochia.planner import Trajectory
+from trochia.planner import plan as plan_motion
+from trochia.toolpath import Measure, Toolpath, build, measure
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from trochia.machine.machine import Machine
+    from trochia.program import Program
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Plan:
+    """One program on one machine.
+
+    Attributes
+    ----------
+    programmed
+        The path as written, without blends.
+    path
+        The path as commanded.
+    size
+        Lengths, counts and extents of the programmed path.
+    trajectory
+        Motion over time.
+    """
+
+    program: Program
+    machine: Machine
+    programmed: Toolpath
+    path: Toolpath
+    size: Measure
+    trajectory: Trajectory
+
+    @property
+    def time_s(self) -> float:
+        """Whole time [s]."""
+        return self.trajectory.duration
+
+    @property
+    def feed_length_mm(self) -> float:
+        """Programmed way at the feed [mm]."""
+        return self.size.feed_length
+
+    @property
+    def rapid_length_mm(self) -> float:
+        """Programmed way of the rapids [mm]."""
+        return self.size.rapid_length
+
+    @property
+    def extents(self) -> dict[str, list[float]]:
+        """Least and greatest position of each axis, start included [mm, degree]."""
+        return by_axis(self.path.axes, self.size.extents)
+
+    @property
+    def feed_extents(self) -> dict[str, list[float]]:
+        """Least and greatest position of each axis in feed moves [mm, degree]; empty without any."""
+        return by_axis(self.path.axes, self.size.feed_extents) if self.size.feed_moves else {}
+
+    def line_times(self) -> tuple[NDArray[np.uint32], NDArray[np.float64]]:
+        """Return the source lines that move, rising, and the seconds of motion in each (lines,), (lines,)."""
+        lines, rows = np.unique(self.program.moves["line"], return_inverse=True)
+        return lines, np.bincount(rows, self.trajectory.move_times, len(lines)).astype(np.float64)
+
+    def figures(self) -> dict[str, Any]:
+        """Return what `trochia plan --json` prints; keys carry their units."""
+        return {
+            "time_s": self.time_s,
+            **{f"{cause}_s": seconds for cause, seconds in self.trajectory.times.items()},
+            "profile": self.trajectory.profile,
+            "lines": self.program.lines,
+            "moves": self.size.moves,
+            "feed_moves": self.size.feed_moves,
+            "feed_length_mm": self.feed_length_mm,
+            "rapid_length_mm": self.rapid_length_mm,
+            "extents": self.extents,
+            "feed_extents": self.feed_extents,
+            "peaks": self.trajectory.peaks,
+        }
+
+
+def make(program: Program, machine: Machine, *, profile: str | None = None) -> Plan:
+    """Return the plan of a program, whether or not it fits the travel (:mod:`trochia.analysis.travel` says).
+
+    Parameters
+    ----------
+    profile
+        Name of a velocity profile; without it the machine's own, else the planner's default.
+    """
+    programmed = build(program, machine, blend=False)
+    path = build(program, machine)
+    return Plan(
+        program=program,
+        machine=machine,
+        programmed=programmed,
+        path=path,
+        size=measure(programmed),
+        trajectory=plan_motion(path, machine, program=program, profile=profile or machine.profile or "trapezoid"),
+    )
+
+
+def by_axis(letters: str, bounds: NDArray[np.float64]) -> dict[str, list[float]]:
+    """Return bounds (2, n) as {axis: [least, greatest]}."""
+    return {letter: [float(low), float(high)] for letter, low, high in zip(letters, *bounds, strict=True)}

@@ -1,0 +1,33 @@
+"""`trochia check`: whether a program will run."""
+
+from __future__ import annotations
+
+import sys
+
+import click
+
+from trochia.cli import options
+from trochia.cli.job import judge
+from trochia.cli.tables import clock, show_verdict
+
+
+@click.command()
+@options.common
+@click.option("--all", "show_all", is_flag=True, help="Report every bad line, not only the first.")
+def command(
+    *, program: str, machine_name: str, place: dict[str, float], profile: str | None, as_json: bool, show_all: bool
+) -> None:
+    """Will it run?  Language, travel, limits; names the first bad line.
+
+    Nothing is simulated; exit code 0 says yes (warnings included), 1 no.
+
+    Example: trochia check part.ngc -m router --at X10Y20
+    """
+    job = judge(program, machine_name, place, profile, first_only=not show_all)
+    if as_json:
+        options.print_json(job.verdict.figures())
+    else:
+        show_verdict(job.verdict)
+        if job.verdict.time_s is not None:
+            click.echo(f"time {clock(job.verdict.time_s)} on {job.machine.name}")
+    sys.exit(0 if job.verdict.ok else 1)

@@ -1,0 +1,40 @@
+"""A program and a machine from the command line to a verdict: what `check`, `plan` and `simulate` share."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from trochia import api
+from trochia.cli.progress import Progress
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from trochia.analysis.check import Verdict
+    from trochia.machine.machine import Machine
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Job:
+    """What the command line names: the text of a program, its name, the machine, and the verdict on both."""
+
+    name: str
+    text: bytes
+    machine: Machine
+    verdict: Verdict
+
+
+def judge(
+    program: str, machine_name: str, place: Mapping[str, float], profile: str | None, *, first_only: bool = True
+) -> Job:
+    """Read the program (``-`` is standard input) and the machine, and judge the one on the other."""
+    machine = api.load(machine_name)
+    name = "<stdin>" if program == "-" else program
+    with Progress() as progress:
+        progress("reading", 0.0)
+        text = sys.stdin.buffer.read() if program == "-" else Path(program).read_bytes()
+        verdict = api.check(text, machine, at=place, name=name, profile=profile, first_only=first_only)
+    return Job(name=name, text=text, machine=machine, verdict=verdict)

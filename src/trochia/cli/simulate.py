@@ -1,0 +1,69 @@
+"""`trochia simulate`: the program on the digital twin, with recording, report and picture."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import click
+
+from trochia import units
+from trochia.cli import options
+from trochia.cli.job import judge
+from trochia.cli.tables import show_plan, show_verdict
+from trochia.errors import UnitError
+
+
+def _period(_context: click.Context, _parameter: click.Parameter, value: str | None) -> float | None:
+    """Return a sampling period from a text like ``1 ms`` or ``2 kHz`` [s]."""
+    if value is None:
+        return None
+    for dimension in ("time", "frequency"):
+        try:
+            number = units.parse(value, dimension)
+        except UnitError:
+            continue
+        if number > 0:
+            return number if dimension == "time" else 1 / number
+    raise click.BadParameter(f'expected a time or rate above zero with its unit, like "1 ms" or "2 kHz", not {value!r}')
+
+
+@click.command()
+@options.common
+@click.option("-o", "--output", type=click.Path(file_okay=False, path_type=Path), default=Path("out"),
+              show_default=True, help="Folder for recording, report and picture.")  # fmt: skip
+@click.option("--rate", "period", callback=_period, metavar="TIME|FREQUENCY",
+              help="Sampling of the recording; without it the machine's servo period.")  # fmt: skip
+def command(
+    *, program: str, machine_name: str, place: dict[str, float], profile: str | None, as_json: bool,
+    output: Path, period: float | None,
+) -> None:  # fmt: skip
+    """Run a program on the digital twin: recording and report.
+
+    Writes OUTPUT/report.html, OUTPUT/path.png and OUTPUT/recording.
+
+    Example: trochia simulate programs/contour.ngc -m xy-table -o out
+    """
+    from trochia.analysis.prove import prove  # noqa: PLC0415 - plots and twin load only when asked for
+    from trochia.cli.progress import Progress  # noqa: PLC0415
+
+    job = judge(program, machine_name, place, profile)
+    if job.verdict.plan is None or not job.verdict.ok:
+        if as_json:
+            options.print_json(job.verdict.figures())
+        else:
+            show_verdict(job.verdict)
+        sys.exit(1)
+    with Progress() as progress:
+        proof = prove(job.verdict, job.text, output, period=period, progress=progress)
+    if as_json:
+        options.print_json(proof.figures())
+        return
+    show_plan(job.verdict.plan)
+    contour = proof.contour_error
+    click.echo(f"contour error at most {contour.peak * 1000:.2f} µm, rms {contour.rms * 1000:.2f} µm")
+    lost = {joint: n for joint, n in proof.lost_steps.items() if n}
+    if lost:
+        click.echo("lost steps: " + ", ".join(f"{joint} {n}" for joint, n in lost.items()))
+    show_verdict(job.verdict)
+    click.echo(f"report   {proof.files['report']}")
