@@ -23,7 +23,8 @@ typedef struct {
     double length;      /* range of s: mm (degrees where only rotary axes move) */
     double speed_limit; /* programmed speed ds/dt; infinity for a rapid */
     uint64_t data;      /* index of the first coefficient in the pool */
-    uint32_t move;      /* row of the program's move it belongs to (a blend: the move it enters) */
+    uint32_t move; /* row of the program's move it belongs to (a blend: the move it enters; cut in two where the feed
+                      changes) */
     uint8_t kind;
     uint8_t stop;   /* 1: at rest at its end */
     uint8_t first;  /* arc: column of the plane's first axis */
@@ -65,7 +66,7 @@ typedef struct {
     uint32_t columns[9];  /* which of the nine letters each is */
 } trochia_path_input;
 
-/* What is made of them; room for 2 segments and (7 + 6 axes) coefficients a move is the caller's. */
+/* What is made of them; room for 3 segments and (7 + 10 axes) coefficients a move is the caller's. */
 typedef struct {
     trochia_segment *segments;
     double *pool;

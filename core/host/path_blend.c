@@ -18,6 +18,7 @@ static const double TANGENT = 1e-6;     /* rad: directions closer than this are 
 static const double REVERSAL = -0.9994; /* cosine: within 2 degrees of turning back, stop */
 static const double ARC_SHARE = 0.2;    /* rad: how much of an arc a one-sided blend replaces at most */
 static const double ARC_BOTH = 0.35;    /* rad: and a two-sided one */
+static const double ALONE = 0.1;        /* rad: beyond this a one-sided blend would swing out noticeably */
 enum { SAMPLES = 16 };
 
 static double norm_between(const double *vector, uint32_t from, uint32_t to) {
@@ -64,7 +65,7 @@ static void want_at_arc(const trochia_curve *a, const trochia_curve *b, double j
     joint->before = joint->after = fmin(4.0 * tolerance / jump, ARC_BOTH / fmax(a->kappa, b->kappa));
     for (int side = 0; side < 2; side++) {
         const trochia_curve *curve = side ? b : a;
-        if (curve->kappa == 0.0)
+        if (curve->kappa == 0.0 || jump > ALONE)
             continue;
         double alone = fmin(ARC_SHARE / curve->kappa, 6.5 * tolerance / jump);
         double curved = curve->kappa + 4.0 * jump / fmin(alone, 0.5 * curve->length);

@@ -220,6 +220,33 @@ static double share(double wish, double other, double length) {
     return fmin(wish, other < 0.5 * length ? length - other : 0.5 * length);
 }
 
+static void emit_cubic(trochia_reader *r, const double *c, double length, double speed, uint32_t move) {
+    append(r, length, speed, move, TROCHIA_CUBIC);
+    memcpy(r->out->pool + r->out->pool_count, c, 4 * r->frame.n * sizeof *c);
+    r->out->pool_count += 4 * r->frame.n;
+}
+
+/* Where the feed changes at the joint the blend is cut there, so that each side keeps its own. */
+static void emit_blend(trochia_reader *r, const trochia_curve *a, const trochia_curve *b, double before,
+                       const trochia_blend *blend) {
+    uint32_t n = r->frame.n;
+    if (a->speed == b->speed || before == 0.0 || before == blend->length) {
+        emit_cubic(r, blend->c, blend->length, before == 0.0 ? b->speed : a->speed, b->move);
+        return;
+    }
+    double rest[36];
+    const double *c = blend->c;
+    for (uint32_t i = 0; i < n; i++) {
+        double c1 = c[n + i], c2 = c[2 * n + i], c3 = c[3 * n + i], u = before;
+        rest[i] = c[i] + u * (c1 + u * (c2 + u * c3));
+        rest[n + i] = c1 + u * (2.0 * c2 + u * 3.0 * c3);
+        rest[2 * n + i] = c2 + 3.0 * c3 * u;
+        rest[3 * n + i] = c3;
+    }
+    emit_cubic(r, c, before, a->speed, a->move);
+    emit_cubic(r, rest, blend->length - before, b->speed, b->move);
+}
+
 /* Settles the joint from `a` to `b`, given what is wanted of `b` at its other end; emits `a` and the blend. */
 static void settle(trochia_reader *r, const trochia_curve *a, const trochia_curve *b, double cut, double wanted_of_b,
                    trochia_joint *joint) {
@@ -234,12 +261,10 @@ static void settle(trochia_reader *r, const trochia_curve *a, const trochia_curv
         trochia_joint_blend(&r->frame, a, b, joint, &blend);
     }
     emit_curve(r, a, cut, a->length - cut - joint->before);
-    r->out->segments[r->out->segment_count - 1].stop = (uint8_t)joint->stop;
-    if (blend.length > 0.0 && !joint->stop) {
-        append(r, blend.length, fmin(a->speed, b->speed), b->move, TROCHIA_CUBIC);
-        memcpy(r->out->pool + r->out->pool_count, blend.c, 4 * r->frame.n * sizeof *blend.c);
-        r->out->pool_count += 4 * r->frame.n;
-    }
+    if (joint->stop)
+        r->out->segments[r->out->segment_count - 1].stop = 1;
+    else if (blend.length > 0.0)
+        emit_blend(r, a, b, joint->before, &blend);
 }
 
 static void start_reader(trochia_reader *r) {

@@ -23,64 +23,94 @@ static void lay_out(const trochia_segment *segments, const double *pool, uint64_
     }
 }
 
-/* Leaves in `exit` the greatest w at each piece's end from which the rest of the path can be kept. */
-static void backward(const trochia_segment *segments, const double *pool, const trochia_limits *limits,
+/* Leaves in `exit` the greatest w at each piece's end from which the rest of the path can be kept, in `peak` the
+ * greatest inside, and in `acceleration` a line's own. */
+static void backward(const trochia_segment *segments, const double *pool, const trochia_bounds *bounds,
                      trochia_piece *pieces, uint64_t piece_count) {
     trochia_span span;
     double next = 0.0;
     for (uint64_t j = piece_count; j-- > 0;) {
         trochia_piece *piece = &pieces[j];
         const trochia_segment *segment = &segments[piece->segment];
-        trochia_span_load(segment, pool, limits, piece->part, piece->parts, &span);
-        double exit = segment->stop && piece->part + 1 == piece->parts ? 0.0 : fmin(next, span.ceiling[1]);
+        trochia_span_load(segment, pool, bounds, piece->part, piece->parts, &span);
+        double ceiling = span.ceiling[0];
+        double exit = next < span.ceiling[1] ? next : span.ceiling[1];
+        if (segment->stop && piece->part + 1 == piece->parts)
+            exit = 0.0;
+        next = ceiling;
+        if (exit < ceiling) {
+            double most = (exit + 2.0 * span.length * trochia_span_reach(&span, 1, exit)) * (1.0 - 4e-16);
+            next = most > ceiling ? ceiling : most > exit ? most : exit;
+        }
         piece->exit = exit;
-        next = span.ceiling[0];
-        if (exit < next)
-            next = fmin(next, (exit + 2.0 * span.length * trochia_span_reach(&span, 1, exit)) * (1.0 - 4e-16));
-        next = fmax(next, fmin(exit, span.ceiling[0]));
+        piece->peak = span.inside;
+        piece->acceleration = span.straight ? span.reach : 0.0;
+        piece->flags =
+            segment->speed_limit < INFINITY && span.feed < segment->speed_limit * segment->speed_limit * (1.0 - 1e-9);
     }
 }
 
-/* How a piece is gone through, from w0 to w1: sets its speeds; returns its time. */
-static double go_through(const trochia_span *span, double w0, double w1, trochia_piece *piece) {
-    double acceleration = 0.0, v0 = sqrt(w0), v1 = sqrt(w1);
-    double peak = trochia_span_peak(span, w0, w1, &acceleration);
-    piece->exit = v1;
-    piece->peak = 0.0;
-    piece->acceleration = 0.5 * (w1 - w0) / span->length;
-    if (peak == 0.0)
-        return 2.0 * span->length / (v0 + v1);
-    double top = sqrt(peak);
-    double stay = fmax(0.0, span->length - (2.0 * peak - w0 - w1) / (2.0 * acceleration));
+/* One piece in its turn: the fastest way through it. */
+typedef struct {
+    const trochia_segment *segments;
+    const double *pool;
+    const trochia_bounds *bounds;
+    double w, v; /* where the piece begins */
+} trochia_runner;
+
+/* Restores what the pass back knew of a piece; a line needs no more than that. */
+static void recall(const trochia_runner *r, const trochia_piece *piece, trochia_span *span) {
+    if (piece->acceleration > 0.0) {
+        span->straight = 1;
+        span->length = r->segments[piece->segment].length;
+        span->inside = piece->peak;
+        span->reach = piece->acceleration;
+        return;
+    }
+    trochia_span_load(&r->segments[piece->segment], r->pool, r->bounds, piece->part, piece->parts, span);
+}
+
+/* Sets a piece's speeds and returns its time. */
+static double go_through(trochia_runner *r, trochia_piece *piece) {
+    trochia_span span;
+    double w0 = r->w, w1 = piece->exit, v0 = r->v, peak = 0.0, acceleration = 0.0;
+    double length = r->segments[piece->segment].length / piece->parts, high = w0 > w1 ? w0 : w1;
+    if (w1 != w0 || piece->peak > high * (1.0 + TROCHIA_WORTH)) {
+        recall(r, piece, &span);
+        if (w1 > w0) {
+            double most = (w0 + 2.0 * length * trochia_span_reach(&span, 0, w0)) * (1.0 - 4e-16);
+            w1 = most > w1 ? w1 : most > w0 ? most : w0;
+        }
+        peak = trochia_span_peak(&span, w0, w1, &acceleration);
+    }
+    double v1 = w1 == w0 ? v0 : sqrt(w1);
+    piece->exit = r->v = v1;
+    r->w = w1;
+    if (peak == 0.0) {
+        piece->peak = 0.0;
+        piece->acceleration = 0.5 * (w1 - w0) / length;
+        return 2.0 * length / (v0 + v1);
+    }
+    double top = sqrt(peak), stay = length - (2.0 * peak - w0 - w1) / (2.0 * acceleration);
     piece->peak = top;
     piece->acceleration = acceleration;
-    return (2.0 * top - v0 - v1) / acceleration + stay / top;
+    return (2.0 * top - v0 - v1) / acceleration + (stay > TROCHIA_STAY * length ? stay / top : 0.0);
 }
 
 double trochia_plan(const trochia_segment *segments, const double *pool, uint64_t count, const trochia_limits *limits,
                     const uint64_t *rest_segments, const double *rest_seconds, uint64_t rests, trochia_piece *pieces,
                     uint64_t piece_count) {
-    trochia_span span;
-    double w = 0.0, time = 0.0;
+    trochia_bounds bounds = trochia_bounds_of(limits);
+    trochia_runner runner = {.segments = segments, .pool = pool, .bounds = &bounds, .w = 0.0, .v = 0.0};
+    double time = 0.0;
     uint64_t rest = 0;
     lay_out(segments, pool, count, limits->axes, pieces);
-    backward(segments, pool, limits, pieces, piece_count);
+    backward(segments, pool, &bounds, pieces, piece_count);
     for (uint64_t j = 0; j < piece_count; j++) {
-        trochia_piece *piece = &pieces[j];
-        const trochia_segment *segment = &segments[piece->segment];
-        for (; rest < rests && rest_segments[rest] <= piece->segment; rest++)
+        for (; rest < rests && rest_segments[rest] <= pieces[j].segment; rest++)
             time += rest_seconds[rest];
-        trochia_span_load(segment, pool, limits, piece->part, piece->parts, &span);
-        double exit = piece->exit;
-        if (exit > w) {
-            double most = (w + 2.0 * span.length * trochia_span_reach(&span, 0, w)) * (1.0 - 4e-16);
-            exit = fmin(exit, fmax(most, w));
-        }
-        piece->flags =
-            segment->speed_limit < INFINITY && span.feed < segment->speed_limit * segment->speed_limit * (1.0 - 1e-9);
-        piece->time = time;
-        time += go_through(&span, w, exit, piece);
-        w = exit;
+        pieces[j].time = time;
+        time += go_through(&runner, &pieces[j]);
     }
     for (; rest < rests; rest++)
         time += rest_seconds[rest];

@@ -18,7 +18,7 @@ static uint64_t phases_of(const trochia_segment *segments, const trochia_piece *
     }
     double rise = (top - v0) * (top + v0) / (2.0 * a), fall = (top - v1) * (top + v1) / (2.0 * a);
     double stay = part - rise - fall;
-    double widths[3] = {(top - v0) / a, stay > 0.0 ? stay / top : 0.0, (top - v1) / a};
+    double widths[3] = {(top - v0) / a, stay > TROCHIA_STAY * part ? stay / top : 0.0, (top - v1) / a};
     double speeds[3] = {v0, top, top}, starts[3] = {s, s + rise, s + part - fall};
     uint64_t made = 0;
     for (int k = 0; k < 3; k++) {

@@ -43,22 +43,83 @@ static double norm(const double *vector, uint32_t n) {
     return sqrt(square);
 }
 
-static void load_line(const trochia_segment *segment, const double *direction, const trochia_limits *limits,
-                      trochia_span *span) {
-    double slowness = norm(direction, limits->linear) / limits->path_velocity;
-    double effort = norm(direction, limits->linear) / limits->path_acceleration;
+trochia_bounds trochia_bounds_of(const trochia_limits *limits) {
+    trochia_bounds bounds = {
+        .limits = limits, .path_slowness = 1.0 / limits->path_velocity, .path_effort = 1.0 / limits->path_acceleration};
     for (uint32_t i = 0; i < limits->rows; i++) {
-        double size = fabs(dot_row(limits, i, direction));
-        if (size > slowness * limits->velocity[i])
-            slowness = size / limits->velocity[i];
-        if (size > effort * limits->acceleration[i])
-            effort = size / limits->acceleration[i];
+        bounds.slowness[i] = 1.0 / limits->velocity[i];
+        bounds.effort[i] = 1.0 / limits->acceleration[i];
     }
+    bounds.capped = bounds.path_slowness > 0.0 || bounds.path_effort > 0.0;
+    bounds.plain = limits->axes == 3 && limits->rows == 3 && !bounds.capped;
+    return bounds;
+}
+
+static inline double larger(double a, double b) {
+    return a > b ? a : b;
+}
+
+static inline double smaller(double a, double b) {
+    return a < b ? a : b;
+}
+
+static void settle_line(const trochia_segment *segment, double slowness, double effort, trochia_span *span) {
     span->straight = 1;
     span->length = segment->length;
     span->reach = 1.0 / effort;
     span->feed = 1.0 / (slowness * slowness);
-    span->inside = span->ceiling[0] = span->ceiling[1] = fmin(span->feed, segment->speed_limit * segment->speed_limit);
+    span->inside = span->ceiling[0] = span->ceiling[1] =
+        smaller(span->feed, segment->speed_limit * segment->speed_limit);
+}
+
+static void load_line(const trochia_segment *segment, const double *direction, const trochia_bounds *bounds,
+                      trochia_span *span) {
+    const trochia_limits *limits = bounds->limits;
+    double slowness = 0.0, effort = 0.0;
+    if (bounds->capped) {
+        double size = norm(direction, limits->linear);
+        slowness = size * bounds->path_slowness;
+        effort = size * bounds->path_effort;
+    }
+    for (uint32_t i = 0; i < limits->rows; i++) {
+        double size = fabs(dot_row(limits, i, direction));
+        slowness = larger(slowness, size * bounds->slowness[i]);
+        effort = larger(effort, size * bounds->effort[i]);
+    }
+    settle_line(segment, slowness, effort, span);
+}
+
+/* The same two for three axes without caps: nearly all segments of nearly all programs come here. */
+static void load_plain_line(const trochia_segment *segment, const double *direction, const trochia_bounds *bounds,
+                            trochia_span *span) {
+    double slowness = 0.0, effort = 0.0;
+    for (int i = 0; i < 3; i++) {
+        double size = fabs(direction[i]);
+        slowness = larger(slowness, size * bounds->slowness[i]);
+        effort = larger(effort, size * bounds->effort[i]);
+    }
+    settle_line(segment, slowness, effort, span);
+}
+
+static void load_plain_parabola(const trochia_segment *segment, const double *c, const trochia_bounds *bounds,
+                                trochia_span *span) {
+    double slowness = 0.0, held = 0.0, length = segment->length;
+    for (int i = 0; i < 3; i++) {
+        double k = 2.0 * c[6 + i], t0 = c[3 + i], t1 = t0 + k * length, effort = bounds->effort[i];
+        span->t[0][i] = t0 * effort;
+        span->t[1][i] = t1 * effort;
+        span->k[0][i] = k * effort;
+        held = larger(held, fabs(k) * effort);
+        slowness = larger(slowness, larger(fabs(t0), fabs(t1)) * bounds->slowness[i]);
+    }
+    span->straight = 0;
+    span->even = 1;
+    span->capped = 0;
+    span->rows = 3;
+    span->length = length;
+    span->feed = 1.0 / (slowness * slowness);
+    double most = smaller(span->feed, segment->speed_limit * segment->speed_limit);
+    span->inside = span->ceiling[0] = span->ceiling[1] = held * most > 1.0 ? 1.0 / held : most;
 }
 
 /* Bounds of |x'''| and |x''''| in the plane of an arc (a spiral's own terms included). */
@@ -98,8 +159,7 @@ static void bounds(const trochia_segment *segment, const double *pool, const tro
     fourth[limits->rows] = flat4;
 }
 
-static void load_cap(const trochia_limits *limits, const double x[2][27], double sag3, double sag4,
-                     trochia_span *span) {
+static void load_cap(const trochia_limits *limits, double x[2][27], double sag3, double sag4, trochia_span *span) {
     double scale = 1.0 / limits->path_acceleration;
     double size[2];
     span->capped = scale > 0.0;
@@ -121,15 +181,36 @@ static void load_cap(const trochia_limits *limits, const double x[2][27], double
     span->feed = fmin(span->feed, 1.0 / (slowness * slowness));
 }
 
+/* Greatest |x'| where it is not 1: a cubic or a spiral may be a little longer than its range of s, and the feed is that
+ * along the path. */
+static double stretch_of(const trochia_segment *segment, const double *pool, const trochia_limits *limits,
+                         double x[2][27], double sag) {
+    const double *c = pool + segment->data;
+    uint32_t n = limits->axes, linear = limits->linear;
+    double stretch = 1.0;
+    if (segment->kind == TROCHIA_ARC_SEGMENT) {
+        if (c[5] == 0.0 || c[6 + 2 * n] == 0.0)
+            return 1.0;
+        /* r phi' is a product of two lines in s, greatest halfway between their roots */
+        double twist = 2.0 * c[6 + 2 * n], at = -0.5 * (c[2] / c[5] + c[4] / twist);
+        at = fmin(fmax(at, 0.0), segment->length);
+        double around = (c[2] + c[5] * at) * (c[4] + twist * at), rise = norm(c + 6 + n, linear);
+        stretch = sqrt(around * around + c[5] * c[5] + rise * rise);
+    } else if (linear)
+        stretch = fmax(norm(x[0] + n, linear), norm(x[1] + n, linear)) + sag;
+    return stretch > 1.0 + 1e-12 ? stretch : 1.0;
+}
+
 static void load_curve(const trochia_segment *segment, const double *pool, const trochia_limits *limits, uint32_t part,
                        uint32_t parts, trochia_span *span) {
-    double x[2][27], third[19], fourth[19], slowness = 0.0, held[2] = {0.0, 0.0}, stretch = 1.0;
+    double x[2][27], third[19], fourth[19], slowness = 0.0, held[2] = {0.0, 0.0};
     double h = segment->length / parts, eighth = h * h / 8.0;
     for (uint32_t end = 0; end < 2; end++)
         trochia_segment_at(segment, pool, limits->axes, part + end == parts ? segment->length : h * (part + end), 3,
                            x[end]);
     bounds(segment, pool, limits, third, fourth);
     span->straight = 0;
+    span->even = 0;
     span->length = h;
     span->rows = limits->rows;
     for (uint32_t i = 0; i < limits->rows; i++) {
@@ -149,24 +230,47 @@ static void load_curve(const trochia_segment *segment, const double *pool, const
     span->ceiling[0] = 1.0 / held[0];
     span->ceiling[1] = 1.0 / held[1];
     span->inside = fmin(span->ceiling[0], span->ceiling[1]);
-    uint32_t linear = limits->linear;
     load_cap(limits, x, eighth * third[limits->rows], eighth * fourth[limits->rows], span);
-    if (linear) /* a cubic may be a little longer than its range of s: the feed is that along the path */
-        stretch = fmax(1.0, fmax(norm(x[0] + limits->axes, linear), norm(x[1] + limits->axes, linear)) +
-                                eighth * third[limits->rows]);
-    double speed = segment->speed_limit / (segment->kind == TROCHIA_CUBIC && stretch > 1.0 + 1e-9 ? stretch : 1.0);
+    double speed = segment->speed_limit / stretch_of(segment, pool, limits, x, eighth * third[limits->rows]);
     double most = fmin(span->feed, speed * speed);
     span->inside = fmin(span->inside, most);
     span->ceiling[0] = fmin(span->ceiling[0], most);
     span->ceiling[1] = fmin(span->ceiling[1], most);
 }
 
-void trochia_span_load(const trochia_segment *segment, const double *pool, const trochia_limits *limits, uint32_t part,
+void trochia_span_load(const trochia_segment *segment, const double *pool, const trochia_bounds *bounds, uint32_t part,
                        uint32_t parts, trochia_span *span) {
-    if (segment->kind == TROCHIA_LINE)
-        load_line(segment, pool + segment->data + limits->axes, limits, span);
+    const double *c = pool + segment->data;
+    if (segment->kind == TROCHIA_LINE) {
+        if (bounds->plain)
+            load_plain_line(segment, c + 3, bounds, span);
+        else
+            load_line(segment, c + bounds->limits->axes, bounds, span);
+    } else if (bounds->plain && segment->kind == TROCHIA_CUBIC && c[9] == 0.0 && c[10] == 0.0 && c[11] == 0.0)
+        load_plain_parabola(segment, c, bounds, span);
     else
-        load_curve(segment, pool, limits, part, parts, span);
+        load_curve(segment, pool, bounds->limits, part, parts, span);
+}
+
+/* trochia_span_reach for a parabola in three axes. */
+static double plain_reach(const trochia_span *span, int end, double w) {
+    double sign = end ? -1.0 : 1.0, twice = 2.0 * span->length, over = 1.0, under = 0.0;
+    for (int i = 0; i < 3; i++) {
+        double p = span->k[0][i] * w, near = sign * span->t[end][i];
+        double far = twice * span->k[0][i] + sign * span->t[1 - end][i];
+        /* the row's limit is met upwards by the greater of q (if above 0), downwards by the lesser (if below) */
+        double up = larger(near, far), down = -smaller(near, far);
+        double room_up = larger(1.0 - p, 0.0), room_down = larger(1.0 + p, 0.0);
+        if (up > 0.0 && room_up * under < over * up) {
+            over = room_up;
+            under = up;
+        }
+        if (down > 0.0 && room_down * under < over * down) {
+            over = room_down;
+            under = down;
+        }
+    }
+    return over / under;
 }
 
 /* alpha >= 0 with |p + q alpha| <= b - d alpha, kept as a quotient so that a row costs no division. */
@@ -201,6 +305,8 @@ static double tighten_cap(const trochia_span *span, int at, double sign, double 
 double trochia_span_reach(const trochia_span *span, int end, double w) {
     if (span->straight)
         return span->reach;
+    if (span->even)
+        return plain_reach(span, end, w);
     double over = 1.0, under = 0.0, sign = end ? -1.0 : 1.0, twice = 2.0 * span->length;
     int far = 1 - end;
     for (uint32_t i = 0; i < span->rows; i++) {
@@ -220,35 +326,60 @@ static double third_sag(double sag_a) {
     return sag_a / 5.0;
 }
 
+/* The peak and its acceleration settled: staying at the greater end's speed counts too, unless nothing is left for it.
+ */
+static double settle_peak(const trochia_span *span, double w0, double w1, double peak, double acceleration) {
+    double high = larger(w0, w1), low = smaller(w0, w1);
+    if (!(peak >= high))
+        return 0.0;
+    if (peak > high * (1.0 + TROCHIA_WORTH))
+        return peak;
+    if (high - low < TROCHIA_WORTH * high)
+        return 0.0;
+    double stay = span->length - (high - low) / (2.0 * acceleration);
+    return stay > TROCHIA_WORTH * span->length ? high : 0.0;
+}
+
+/* Of one row of a curve, the greatest |q'| and |q''| over the piece. */
+static void greatest_of(const trochia_span *span, uint32_t row, double *t, double *k) {
+    if (row == span->rows) {
+        *t = third_sag(span->cap_a) + fmax(norm(span->along[0], 3), norm(span->along[1], 3));
+        *k = span->cap_w + fmax(norm(span->bend[0], 3), norm(span->bend[1], 3));
+        return;
+    }
+    *t = larger(fabs(span->t[0][row]), fabs(span->t[1][row]));
+    if (span->even) {
+        *k = fabs(span->k[0][row]);
+        return;
+    }
+    *t += third_sag(span->sag_a[row]);
+    *k = span->sag_w[row] + larger(fabs(span->k[0][row]), fabs(span->k[1][row]));
+}
+
 /* Without signs: |k| w + |t| a <= 1 with the greatest of both over the piece.  A triangle up to W needs
  * a = (2 W - w0 - w1) / 2 L, so W = ((w0 + w1) t + 2 L) / (2 t + 2 L k) by each row; below that there is room to stay.
  */
 double trochia_span_peak(const trochia_span *span, double w0, double w1, double *acceleration) {
-    double length = span->length, high = fmax(w0, w1) * (1.0 + 1e-9), peak = span->inside;
-    if (!(peak > high))
+    double length = span->length, peak = span->inside, t[19], k[19];
+    if (peak < larger(w0, w1))
         return 0.0;
     if (span->straight) {
-        peak = fmin(peak, 0.5 * (w0 + w1) + length * span->reach);
         *acceleration = span->reach;
-        return peak > high ? peak : 0.0;
+        return settle_peak(span, w0, w1, smaller(peak, 0.5 * (w0 + w1) + length * span->reach), span->reach);
     }
-    double t[19], k[19];
     uint32_t rows = span->rows + (span->capped ? 1 : 0);
     for (uint32_t i = 0; i < rows; i++) {
-        int vector = i == span->rows;
-        double sag_w = vector ? span->cap_w : span->sag_w[i], sag_a = vector ? span->cap_a : span->sag_a[i];
-        t[i] = third_sag(sag_a) + (vector ? fmax(norm(span->along[0], 3), norm(span->along[1], 3))
-                                          : fmax(fabs(span->t[0][i]), fabs(span->t[1][i])));
-        k[i] = sag_w + (vector ? fmax(norm(span->bend[0], 3), norm(span->bend[1], 3))
-                               : fmax(fabs(span->k[0][i]), fabs(span->k[1][i])));
-        if (t[i] + length * k[i] > 0.0)
-            peak = fmin(peak, ((w0 + w1) * t[i] + 2.0 * length) / (2.0 * t[i] + 2.0 * length * k[i]));
+        greatest_of(span, i, &t[i], &k[i]);
+        double den = 2.0 * t[i] + 2.0 * length * k[i], num = (w0 + w1) * t[i] + 2.0 * length;
+        if (num < peak * den)
+            peak = num / den;
     }
-    if (!(peak > high))
+    if (peak < larger(w0, w1))
         return 0.0;
-    *acceleration = INFINITY;
+    double least = INFINITY;
     for (uint32_t i = 0; i < rows; i++)
-        if (t[i] > 0.0)
-            *acceleration = fmin(*acceleration, (1.0 - k[i] * peak) / t[i]);
-    return peak;
+        if (1.0 - k[i] * peak < least * t[i])
+            least = (1.0 - k[i] * peak) / t[i];
+    *acceleration = least;
+    return settle_peak(span, w0, w1, peak, least);
 }

@@ -64,8 +64,8 @@ def build(
     speeds = np.zeros(count) if rpm is None else np.ascontiguousarray(rpm, dtype=np.float64)
     if speeds.shape != moves.shape:
         raise ValueError("one spindle speed a move")
-    segments = np.empty(2 * count, dtype=SEGMENT)
-    pool = np.empty((7 + 6 * axes) * count)
+    segments = np.empty(3 * count, dtype=SEGMENT)
+    pool = np.empty((7 + 10 * axes) * count)
     given = ffi.new("trochia_path_input *")
     made = ffi.new("trochia_path_output *")
     flags = np.ascontiguousarray(rests, dtype=np.uint8)
