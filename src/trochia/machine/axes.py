@@ -19,6 +19,12 @@ class AxisKind(Enum):
     ROTARY = "rotary"
 
 
+def check_letter(name: str) -> None:
+    """Refuse a name that is no axis letter, with a ConfigError."""
+    if name not in tuple(LETTERS):
+        raise ConfigError(f"an axis is one of the letters {' '.join(LETTERS)}, not {name!r}", key=f"axes.{name}")
+
+
 _POSITION = Quantity("length", motion=True)
 _VELOCITY = Quantity("velocity", motion=True)
 _ACCELERATION = Quantity("acceleration", motion=True)
@@ -44,9 +50,8 @@ class Axis:
     )
 
     def __post_init__(self) -> None:
+        check_letter(self.name)
         check_bounds(self, rotary=self.rotary, path=f"axes.{self.name}")
-        if self.name not in tuple(LETTERS):
-            raise ConfigError(f"an axis is one of the letters {' '.join(LETTERS)}", key=f"axes.{self.name}")
         if not self.minimum < self.maximum:
             low, high = (_POSITION.write(value, rotary=self.rotary) for value in (self.minimum, self.maximum))
             raise ConfigError(f"must lie above minimum ({low}), not at {high}", key=f"axes.{self.name}.maximum")

@@ -57,6 +57,9 @@ def inspect(name_or_path: str | Path) -> tuple[Machine | None, list[MachineError
 
 def inspect_text(text: str, file: str) -> tuple[Machine | None, list[MachineError]]:
     """Return the machine of a text, or None and every mistake in it."""
+    if not text.strip():
+        return None, [ConfigError("the machine file is empty", source=Source(file, 1),
+                                  hint="Make one with: trochia machine new")]  # fmt: skip
     try:
         # Decimal keeps what was typed: 2.5 stays 5/2 where gearing must be exact
         document = tomllib.loads(text, parse_float=Decimal)
@@ -147,13 +150,10 @@ def _syntax_error(error: tomllib.TOMLDecodeError, file: str, text: str) -> Confi
     """Return TOML's complaint with its place and line."""
     message = str(error)
     place = _PLACE.search(message)
-    lines = text.splitlines() or [""]
+    lines = text.splitlines()
     line = int(place.group(1)) if place and place.group(1) else len(lines)
     column = int(place.group(2)) if place and place.group(2) else 0
     what = _PLACE.sub("", message)
     shown = lines[min(line, len(lines)) - 1][:200]
-    if not text.strip():
-        return ConfigError("the machine file is empty", source=Source(file, 1),
-                           hint="Make one with: trochia machine new")  # fmt: skip
     return ConfigError(f"not TOML: {what[:1].lower()}{what[1:]}", source=Source(file, line, column), text=shown,
                        hint='A line is `key = "value with unit"`, a [table] or a # comment.')  # fmt: skip

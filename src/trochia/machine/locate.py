@@ -23,7 +23,8 @@ def places(text: str) -> dict[tuple[str, ...], Place]:
     for number, line in enumerate(text.splitlines(), 1):
         if header := _HEADER.match(line):
             table = _parts(header.group(1))
-            found.setdefault(table, (number, header.start(1) + 1))
+            for length in range(1, len(table) + 1):
+                found.setdefault(table[:length], (number, header.start(1) + 1))
         elif entry := _KEY.match(line):
             name = table + _parts(entry.group(1))
             found.setdefault(name, (number, entry.start(1) + 1))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, cast
 
 from trochia.errors import MachineError
-from trochia.machine.axes import LETTERS, Axis, AxisKind
+from trochia.machine.axes import LETTERS, Axis, AxisKind, check_letter
 from trochia.machine.codecs import Text
 from trochia.machine.io import Channel
 from trochia.machine.joints import Joint
@@ -52,7 +52,7 @@ def _machine(top: Table) -> Machine:
         with book.catch():
             io.append(build(table, Channel, name=name))
     values = fields(top, Machine, rotary=False, given={})
-    top.refuse_rest(["format"])
+    top.refuse_rest()
     if len(book.problems) > before:
         raise Incomplete("")
     return construct(
@@ -76,6 +76,7 @@ def _axes(top: Table) -> tuple[Axis, ...]:
             raise top.error("axes", "missing; expected a table for each axis, like [axes.X]")
     for name, table in tables.items():
         with top.book.catch():
+            check_letter(name)
             kind = cast("AxisKind | None", table.read("kind", cast("Text", keys_of(Axis)["kind"].codec)))
             kind = kind or (AxisKind.ROTARY if name in tuple("ABC") else AxisKind.LINEAR)
             axes.append(build(table, Axis, rotary=kind is AxisKind.ROTARY, name=name, kind=kind))

@@ -14,7 +14,7 @@ from trochia.machine.schema import Record, Variant, keys_of, required
 from trochia.units import did_you_mean, shown
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Mapping
 
     from trochia.machine.codecs import Codec
 
@@ -123,15 +123,14 @@ class Table:
         except MachineError as error:
             raise self.book.placed(error, self.name(key)) from None
 
-    def refuse_rest(self, known: Iterable[str] = ()) -> None:
+    def refuse_rest(self) -> None:
         """Note every key that nobody read."""
-        names = [*self._read, *known]
         for key in self.values:
             if key not in self._read:
                 with self.book.catch():
-                    free = [name for name in names if name not in self.values]
-                    expected = ", ".join(sorted(names)) or "none"
-                    raise self.error(key, "unknown key", hint=did_you_mean(key, free) or f"Known here: {expected}.")
+                    free = [name for name in self._read if not isinstance(self.values.get(name, {}), str | int)]
+                    known = f"Known here: {', '.join(sorted(self._read)) or 'none'}."
+                    raise self.error(key, "unknown key", hint=did_you_mean(key, free) or known)
 
 
 def build(table: Table, cls: type[T], *, rotary: bool = False, **given: object) -> T:
@@ -154,6 +153,7 @@ def build(table: Table, cls: type[T], *, rotary: bool = False, **given: object) 
 def fields(table: Table, cls: type[Any], *, rotary: bool, given: Mapping[str, object]) -> dict[str, object]:
     """Return the fields that stand in the table; what is wrong or missing is noted."""
     values: dict[str, object] = {}
+    unknown = set(table.values) - set(keys_of(cls)) - {"kind"}
     for name, entry in keys_of(cls).items():
         if name in given:
             continue
@@ -161,7 +161,7 @@ def fields(table: Table, cls: type[Any], *, rotary: bool, given: Mapping[str, ob
             value = _value(table, name, entry.codec, rotary=rotary)
             if value is not None:
                 values[name] = value
-            elif required(cls, name):
+            elif required(cls, name) and not did_you_mean(name, unknown):  # a misspelt key is told as one mistake
                 raise table.error(name, f"missing; expected {_expected(entry.codec, rotary=rotary)} ({entry.doc})")
     return values
 
