@@ -1,0 +1,142 @@
+"""What the report's page draws from: one JSON object, arrays as little-endian bytes in base64, bounded in size.
+
+In: :class:`ReportData` of any length.  Out: a dictionary for :func:`json.dumps`; ``data.js`` reads it back.
+"""
+
+from __future__ import annotations
+
+import base64
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from trochia.analysis.report.decimate import bucket_extremes, bucket_times, simplify
+from trochia.analysis.report.deviation import deviation
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import NDArray
+
+    from trochia.analysis.report.data import MotionSamples, ProgrammedPath, ReportData
+
+    Payload = dict[str, Any]
+
+#: Changes when a field changes its meaning; ``data.js`` refuses another.
+FORMAT = 1
+PROGRAMMED_POINTS = 25_000
+PATH_POINTS = 30_000
+SAMPLES = 20_000
+#: Four-byte numbers that path and channels may each take together; many axes get fewer points (1.9 MB in base64).
+_NUMBERS = 350_000
+#: Characters of source text that are embedded; lines beyond show their number only.
+_TEXT_BUDGET = 400_000
+_TEXT_WIDTH = 100
+
+
+def payload(data: ReportData, keep_lines: Iterable[int] = ()) -> Payload:
+    """Return everything the page draws; ``keep_lines`` are source lines whose text must be there."""
+    programmed = None if data.programmed is None else _programmed(data.programmed)
+    samples = data.samples
+    return {
+        "format": FORMAT,
+        "axes": [
+            {"name": axis.name, "unit": axis.unit, "travel": list(axis.travel), "velocity": axis.velocity,
+             "acceleration": axis.acceleration} for axis in data.axes
+        ],
+        "caps": {"velocity": data.path_velocity, "acceleration": data.path_acceleration},
+        "programmed": programmed,
+        "path": None if samples is None else _path(samples, data.programmed),
+        "channels": None if samples is None else _channels(samples),
+        "lines": _texts(data, keep_lines),
+    }  # fmt: skip
+
+
+def pack(values: NDArray[Any], kind: str) -> Payload:
+    """Return an array as ``{"type", "data"}``; ``kind`` is a numpy type of known size, like ``"f4"``."""
+    raw = np.ascontiguousarray(values, dtype=f"<{kind}").tobytes()
+    return {"type": kind, "data": base64.b64encode(raw).decode("ascii")}
+
+
+def _columns(table: NDArray[np.float64]) -> list[Payload]:
+    return [pack(column, "f4") for column in table.T]
+
+
+def _programmed(path: ProgrammedPath) -> Payload:
+    points = path.points
+    if not len(points):
+        return {"position": _columns(points), "line": pack(path.line, "i4"), "rapid": pack(path.rapid, "u1")}
+    steps = np.linalg.norm(np.diff(points, axis=0, prepend=points[:1]), axis=1)
+    # a change between feed and rapid counts as a step of a thousandth of the part, so that it outlives flat points
+    features: NDArray[Any] = np.column_stack((points / _size(points), 1e-3 * path.rapid))
+    kept = simplify(np.cumsum(steps), features, PROGRAMMED_POINTS)
+    return {
+        "position": _columns(points[kept]), "line": pack(path.line[kept], "i4"), "rapid": pack(path.rapid[kept], "u1")
+    }  # fmt: skip
+
+
+def _path(samples: MotionSamples, programmed: ProgrammedPath | None) -> Payload:
+    """Return the samples that draw the path, each at its time: position, errors, speed, line, rapid or not."""
+    error = samples.following_error
+    width = samples.position.shape[1] * (1 if error is None else 3) + 5
+    position = samples.position / _size(samples.position)
+    # colour may be wrong by a twentieth of what place may be: both show, but place matters more
+    features: list[NDArray[Any]] = [
+        position,
+        0.05 * samples.speed[:, None] / (np.max(samples.speed, initial=0.0) or 1.0),
+    ]
+    if error is not None:
+        features.append(error / _size(samples.position))
+    kept = simplify(samples.time, np.concatenate(features, axis=1), min(PATH_POINTS, _NUMBERS // width))
+    line = samples.line[kept]
+    rapid_lines = np.zeros(0, np.int64) if programmed is None else np.unique(programmed.line[programmed.rapid])
+    return {
+        "time": pack(samples.time[kept], "f8"),
+        "position": _columns(samples.position[kept]),
+        "error": None if error is None else _columns(-error[kept]),
+        "deviation": None if samples.actual is None else _columns(deviation(samples.position, samples.actual, kept)),
+        "speed": pack(samples.speed[kept], "f4"),
+        "line": pack(line, "i4"),
+        "rapid": pack(np.isin(line, rapid_lines), "u1"),
+        "of": len(samples.time),
+    }
+
+
+def _channels(samples: MotionSamples) -> Payload:
+    """Return every plotted quantity over a common time, peaks kept."""
+    error, contour = samples.following_error, samples.contour_error
+    tables = {"position": samples.position, "velocity": samples.velocity, "acceleration": samples.acceleration}
+    if error is not None:
+        tables["following"] = error
+    width = sum(table.shape[1] for table in tables.values()) + 4
+    limit = min(SAMPLES, _NUMBERS // width)
+
+    def column(values: NDArray[np.float64]) -> Payload:
+        return pack(bucket_extremes(values, limit), "f4")
+
+    packed: Payload = {name: [column(values) for values in table.T] for name, table in tables.items()}
+    packed["speed"] = column(samples.speed)
+    packed["contour"] = None if contour is None else column(contour)
+    packed["time"] = pack(bucket_times(samples.time, limit), "f8")
+    return packed
+
+
+def _size(points: NDArray[np.float64]) -> float:
+    """Return the diagonal of the points' box, or 1 where there is none."""
+    return float(np.linalg.norm(np.ptp(points, axis=0))) or 1.0 if len(points) else 1.0
+
+
+def _texts(data: ReportData, keep: Iterable[int]) -> dict[int, str]:
+    """Return source texts by line number: those to keep, then as many as the budget allows, evenly spread."""
+    used = [np.zeros(0, np.int64)]
+    used += [part.line for part in (data.programmed, data.samples) if part is not None]
+    lines = np.unique(np.concatenate(used))
+    lines = lines[(lines >= 1) & (lines <= len(data.source))]
+    if not len(lines):
+        return {line: data.text(line)[:_TEXT_WIDTH] for line in sorted(set(keep))}
+    probe = lines[:: max(1, len(lines) // 500)].tolist()
+    average = 12 + sum(min(_TEXT_WIDTH, len(data.text(line))) for line in probe) / len(probe)
+    stride = max(1, math.ceil(len(lines) * average / _TEXT_BUDGET))
+    chosen = sorted({*keep, *lines[::stride].tolist()})
+    return {line: data.text(line)[:_TEXT_WIDTH] for line in chosen}

@@ -1,0 +1,54 @@
+// The plots of a motion: which quantities there are, each axis in its colour.  A new plot is a new row of `chartSpecs`.
+
+/** Quantities per axis: key of the channel, title, what follows the unit, decimals, key of the axis' limit. */
+const AXIS_QUANTITIES = [
+  ["position", "Position", "", 3, null],
+  ["velocity", "Velocity", "/s", 2, "velocity"],
+  ["acceleration", "Acceleration", "/s²", 0, "acceleration"],
+];
+
+/**
+ * @param {Motion} motion
+ * @returns {ChartSpec[]} linear and rotary axes apart, since their units differ
+ */
+function chartSpecs(motion) {
+  const { channels, axes, caps } = motion;
+  const units = [...new Set(axes.map((axis) => axis.unit))];
+  const perAxis = ([key, title, tail, digits, limit]) =>
+    units.map((unit) => ({
+      title, digits, unit: unit + tail, oneSided: false, mapped: false,
+      series: axes
+        .map((axis, i) => ({ name: axis.name, axis: i, values: channels[key][i], limit: limit && axis[limit], unit: axis.unit }))
+        .filter((series) => series.unit === unit),
+    }));
+  const single = (title, unit, digits, values, limit, mapped) => ({
+    title, digits, unit, oneSided: true, mapped, series: [{ name: "", axis: -1, values, limit }],
+  });
+  const specs = [single("Path speed", "mm/s", 2, channels.speed, caps.velocity, true)];
+  specs.push(...AXIS_QUANTITIES.flatMap(perAxis));
+  if (channels.following) specs.push(...perAxis(["following", "Following error", "", 4, null]));
+  if (channels.contour) specs.push(single("Contour error", "mm", 4, channels.contour, null, false));
+  return specs;
+}
+
+/**
+ * Draw all plots under `parent` and keep them in step with the store.
+ * @param {HTMLElement} parent
+ * @param {Motion} motion
+ * @param {Store} store
+ * @returns {Chart[]}
+ */
+function attachCharts(parent, motion, store) {
+  Chart.theme = new Theme();
+  const charts = chartSpecs(motion).map((spec) => new Chart(parent, spec, motion, store));
+  for (const chart of charts) attachChartInput(chart, motion, store);
+  store.subscribe((_, changed) => {
+    const redraw = ["window", "line", "feed", "hidden"].some((key) => changed.has(key));
+    for (const chart of charts) {
+      chart.root.hidden = chart.visible.length === 0;
+      if (redraw) chart.draw();
+      else chart.showCursor();
+    }
+  });
+  return charts;
+}
