@@ -248,7 +248,7 @@ int64_t trochia_steps(const trochia_step_job *job, trochia_step_state *state, in
         const trochia_phase *phase = job->phases + state->phase;
         double base = phase->t * job->clock, duration = phase->duration * job->clock;
         double end = fmin(duration, job->until - base);
-        if ((phase->v != 0.0 || phase->a != 0.0 || phase->j != 0.0) && end > state->tau) {
+        if (!(phase->flags & 1u) && end > state->tau) {
             if (known != (int64_t)phase->segment)
                 curve_of(job, job->segments + phase->segment, &curve);
             known = (int64_t)phase->segment;
@@ -264,10 +264,4 @@ int64_t trochia_steps(const trochia_step_job *job, trochia_step_state *state, in
             break;
     }
     return out.made;
-}
-
-double trochia_step_position(const trochia_step_job *job, int64_t phase) {
-    joint_curve curve;
-    curve_of(job, job->segments + job->phases[phase].segment, &curve);
-    return curve_position(&curve, job->phases[phase].s);
 }

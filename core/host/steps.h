@@ -37,7 +37,4 @@ typedef struct {
 int64_t trochia_steps(const trochia_step_job *job, trochia_step_state *state, int64_t capacity, int64_t *ticks,
                       int8_t *directions);
 
-/* Position of the joint [steps] at the start of a phase. */
-double trochia_step_position(const trochia_step_job *job, int64_t phase);
-
 #endif

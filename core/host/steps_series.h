@@ -68,15 +68,6 @@ static inline void curve_of(const trochia_step_job *job, const trochia_segment *
         curve->g[i] = dot(job->axes, job->row, data + i * job->axes);
 }
 
-static inline double curve_position(const joint_curve *curve, double s) {
-    double q = curve->g[0] + s * (curve->g[1] + s * (curve->g[2] + s * curve->g[3]));
-    if (curve->arc) {
-        double phi = curve->angle + s * (curve->angle_rate + s * curve->angle_curve);
-        q += (curve->radius + curve->radius_rate * s) * (curve->x * cos(phi) + curve->y * sin(phi));
-    }
-    return q;
-}
-
 /* c = g(s + p), p = p1 u + p2 u^2 + p3 u^3. */
 static inline void cubic_series(const double *g, double s, const double *p, double *c) {
     double first = g[1] + s * (2.0 * g[2] + s * 3.0 * g[3]);

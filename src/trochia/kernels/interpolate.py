@@ -59,7 +59,7 @@ def arc_pulses(
     Raises
     ------
     ValueError
-        For a point at the centre or coordinates out of range; that start and end lie on the circle is the caller's care.
+        For a point at the centre or coordinates out of range.  That both points lie on the circle is the caller's care.
     """
     _check(*start, *end)
     if not 0 < radius_squared <= GREATEST**2 or start == (0, 0) or end == (0, 0):

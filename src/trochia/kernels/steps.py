@@ -10,28 +10,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from trochia.kernels.layout import PHASE, SEGMENT, ffi, lib, pointer
+from trochia.kernels.layout import PHASE, ffi, lib, pointer
+from trochia.kernels.path import check
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 GREATEST_TICK = 2**50  #: beyond it a tick no longer fits the fraction of a double with room to round
 _CHUNK = 1 << 14  # steps a call of C: its outputs stay in the second-level cache
-_COEFFICIENTS = {lib.TROCHIA_LINE: (0, 2), lib.TROCHIA_ARC_SEGMENT: (7, 2), lib.TROCHIA_CUBIC: (0, 4)}
-
-
-def _check_path(segments: NDArray[np.void], pool: NDArray[np.float64], axes: int) -> None:
-    """Refuse segments whose coefficients lie outside the pool or whose arc plane is no axis."""
-    if segments.dtype != SEGMENT or pool.dtype != np.float64:
-        raise ValueError("steps need SEGMENT rows and a pool of doubles")
-    kind = segments["kind"]
-    for code, (fixed, rows) in _COEFFICIENTS.items():
-        data = segments["data"][kind == code]
-        if data.size and data.max() + fixed + rows * axes > pool.size:
-            raise ValueError("a segment's coefficients lie outside the pool")
-    arcs = segments[kind == lib.TROCHIA_ARC_SEGMENT]
-    if not np.isin(kind, list(_COEFFICIENTS)).all() or (arcs["first"] >= axes).any() or (arcs["second"] >= axes).any():
-        raise ValueError("a segment of unknown kind, or an arc in a plane that is not there")
 
 
 class JointSteps:
@@ -46,7 +32,7 @@ class JointSteps:
     clock
         Ticks a second [Hz].
     count
-        Steps already counted where the joint stands; None takes the whole step nearest to the first position.
+        Steps counted where the joint stands at the start.
 
     Raises
     ------
@@ -60,12 +46,12 @@ class JointSteps:
         pool: NDArray[np.float64],
         row: NDArray[np.float64],
         clock: float,
-        count: int | None = None,
+        count: int,
     ) -> None:
         self._segments = np.ascontiguousarray(segments)
         self._pool = np.ascontiguousarray(pool)
         self._row = np.array(row, dtype=np.float64)
-        _check_path(self._segments, self._pool, self._row.size)
+        check(self._segments, self._pool, self._row.size)
         if not clock > 0.0 or not np.isfinite(self._row).all():
             raise ValueError(f"clock {clock!r} must be above zero and the row finite")
         self._state = ffi.new("trochia_step_state *")
@@ -75,8 +61,7 @@ class JointSteps:
         self._job.row = pointer(self._row, "double *")
         self._job.axes = self._row.size
         self._job.clock = clock
-        self._standing = count is not None  # whether it is known where the joint stands
-        self._state.count = count or 0
+        self._state.count = count
         self._phases = np.empty(0, dtype=PHASE)
         self._ticks = np.empty(_CHUNK, dtype=np.int64)
         self._directions = np.empty(_CHUNK, dtype=np.int8)
@@ -90,18 +75,16 @@ class JointSteps:
         """Take the phases to work next; they follow those before."""
         if phases.dtype != PHASE:
             raise ValueError("steps need PHASE rows")
-        if phases.size and int(phases["segment"].max()) >= self._segments.size:
+        moving = phases[phases["flags"] & 1 == 0]
+        if moving.size and int(moving["segment"].max()) >= self._segments.size:
             raise ValueError("a phase names a segment that is not there")
-        if phases.size and (phases["t"][-1] + phases["duration"][-1]) * self._job.clock > GREATEST_TICK:
+        if phases.size and not (phases["t"][-1] + phases["duration"][-1]) * self._job.clock < GREATEST_TICK:
             raise ValueError(f"the program is longer than {GREATEST_TICK} ticks")
         self._phases = np.ascontiguousarray(phases)
         self._job.phases = pointer(self._phases, "trochia_phase *")
         self._job.phase_count = self._phases.size
         self._state.phase = 0
         self._state.tau = 0.0
-        if phases.size and not self._standing:
-            self._standing = True
-            self._state.count = round(lib.trochia_step_position(self._job, 0))
 
     def until(self, tick: float = np.inf) -> tuple[NDArray[np.int64], NDArray[np.int8]]:
         """Return ticks and directions (+1, -1) of the steps up to ``tick``, in order."""

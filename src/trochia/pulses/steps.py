@@ -24,31 +24,18 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from trochia.machine.machine import Machine
+    from trochia.toolpath import Toolpath
 
 CLOCK = 16_000_000  #: ticks a second [Hz]: that of the smallest controller board, which divides it no further
 WINDOW = 0.1  #: longest block [s]: work enough a call, and a few hundred kB at a hundred thousand steps a second
-
-
-class Path(Protocol):
-    """Segments and their coefficients (``core/host/path.h``) in the machine's axes."""
-
-    @property
-    def segments(self) -> NDArray[np.void]:
-        """SEGMENT rows (segments,)."""
-        ...
-
-    @property
-    def pool(self) -> NDArray[np.float64]:
-        """Coefficients (n,)."""
-        ...
 
 
 class Motion(Protocol):
     """What step timing asks of a trajectory."""
 
     @property
-    def toolpath(self) -> Path:
-        """The path it runs over."""
+    def path(self) -> Toolpath:
+        """The path it runs over, in the machine's axes."""
         ...
 
     def blocks(self) -> Iterable[NDArray[np.void]]:
@@ -103,7 +90,7 @@ def step_blocks(
     clock
         Ticks a second [Hz].
     counts
-        Where each joint stands at the start [steps]; None: on the whole step nearest to the first position.
+        Where each joint stands at the start [steps]; None: on the whole step nearest to the path's start.
 
     Raises
     ------
@@ -112,10 +99,11 @@ def step_blocks(
     """
     if clock < 1:
         raise ConfigError(f"a step clock has at least one tick a second, not {clock!r}")
-    path = trajectory.toolpath
-    rows = step_rows(machine)
-    begins: tuple[int | None, ...] = (None,) * len(rows) if counts is None else counts
-    joints = [JointSteps(path.segments, path.pool, row, clock, begin) for row, begin in zip(rows, begins, strict=True)]
+    path, rows = trajectory.path, step_rows(machine)
+    begins = np.floor(rows @ path.start + 0.5) if counts is None else counts
+    joints = [
+        JointSteps(path.segments, path.pool, row, clock, int(begin)) for row, begin in zip(rows, begins, strict=True)
+    ]
     for phases in trajectory.blocks():
         if phases.size:
             yield from _windows(phases, joints, clock)

@@ -1,7 +1,7 @@
 """The classic interpolators: a line or an arc in whole steps to the pulses of two axes; integers only.
 
-Each method is one file, which states it readably; ``core/shared/interpolate.h`` does the same fast, and on a chip.  A row
-in ``INTERPOLATORS`` is what makes a method known to the command line and tested.
+Each method is one file, which states it readably; ``core/shared/interpolate.h`` does the same fast, and on a chip.  A
+row in ``INTERPOLATORS`` is what makes a method known to the command line and tested.
 """
 
 from __future__ import annotations
@@ -88,8 +88,8 @@ def positions(pulses: NDArray[np.uint8], start: Point = (0, 0)) -> NDArray[np.in
     """Return where the axes stand after each tick (ticks + 1, 2) [steps], the start first."""
     clocks = np.stack((pulses & PortBit.X_CLOCK, pulses & PortBit.Y_CLOCK), axis=-1) > 0
     forwards = np.stack((pulses & PortBit.X_FORWARDS, pulses & PortBit.Y_FORWARDS), axis=-1) > 0
-    moves = np.where(clocks, np.where(forwards, 1, -1), 0)
-    return np.concatenate((np.array([start]), start + np.cumsum(moves, axis=0)))
+    moves = clocks * np.where(forwards, 1, -1)
+    return np.cumsum(np.concatenate((np.array([start]), moves)), axis=0, dtype=np.int64)
 
 
 INTERPOLATORS: dict[str, Interpolator] = {

@@ -35,11 +35,12 @@ def arc(x: int, y: int, x_end: int, y_end: int, radius_squared: int) -> Iterator
     while x > x_end and y < y_end:
         across, along = f - 2 * x + 1, f + 2 * y + 1
         both = across + along - f
-        if both < 0:
-            step = Y if along + both <= 0 else BOTH
+        if both < 0 and along + both <= 0:  # inside, and out along y is nearer
+            step, f = Y, along
+        elif both > 0 and across + both > 0:  # outside, and in across x is nearer
+            step, f = X, across
         else:
-            step = X if across + both > 0 else BOTH
-        f = across if step == X else along if step == Y else both
+            step, f = BOTH, both
         x, y = x - step[0], y + step[1]
         yield step
     yield from straight_on(x - x_end, y_end - y)

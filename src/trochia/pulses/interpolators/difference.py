@@ -1,11 +1,11 @@
 """Coordinate-difference method: the law of motion, sampled; the differences are the axes' pulse rates until the next.
 
-At every eighth tick the law x(t), y(t) of uniform motion along the curve is evaluated; what each axis lacks to it is sent
-as so many pulses, spread evenly over the eight ticks.  So the speed along the curve is the same in every direction.
+At every eighth tick the law x(t), y(t) of uniform motion along the curve is evaluated; what each axis lacks to it is
+sent as so many pulses, spread evenly over the eight ticks.  So the speed along the curve is the same in any direction.
 
 Line:    x = p t/T, y = q t/T, with T the line's length in ticks.
-Circle:  (x, y) turned by α = 2⁻ᵐ a sample, cos α ≈ 1 - α²/2 and sin α ≈ α: shifts and additions only, and the radius
-         grows by no more than α⁴/8 of itself a sample.
+Circle:  (x, y) turned by w = 2⁻ᵐ a sample, cos w ≈ 1 - w²/2 and sin w ≈ w: shifts and additions only, and the radius
+         grows by no more than w⁴/8 of itself a sample.
 """
 
 from __future__ import annotations

@@ -2,8 +2,9 @@
 
 In: a line, or an arc about its centre.  Out: the pieces a method works on, and what its steps are on the real axes.
 
-A line goes from (0, 0) to (p, q) with p and q at least 0.  An arc is cut where it meets the axes; in its quadrant it runs
-counter-clockwise through x > 0, y ≥ 0, so that x only falls and y only rises; clockwise is the same with x and y swapped.
+A line goes from (0, 0) to (p, q) with p and q at least 0.  An arc is cut where it meets the axes; in its quadrant it
+runs counter-clockwise through x > 0, y ≥ 0, so that x only falls and y only rises; clockwise is the same with x and y
+swapped.
 """
 
 from __future__ import annotations
@@ -109,12 +110,11 @@ def _ahead(x: int, y: int, end: Point) -> bool:
 def pieces(arc: Arc) -> Iterator[Piece]:
     """Yield an arc quadrant by quadrant."""
 
-    def aim(point: Point, quarters: int) -> Point:
-        back = turned(point, quarters)
-        return back[::-1] if arc.clockwise else back
+    def swapped(point: Point) -> Point:
+        return (point[1], point[0]) if arc.clockwise else point
 
     radius = nearest_root(arc.radius_squared)
-    first, last = (point[::-1] if arc.clockwise else point for point in (arc.start, arc.end))
+    first, last = swapped(arc.start), swapped(arc.end)
     quarters = next(k for k in range(4) if turned(first, -k)[0] > 0 and turned(first, -k)[1] >= 0)
     x, y = turned(first, -quarters)
     done = False
@@ -122,7 +122,8 @@ def pieces(arc: Arc) -> Iterator[Piece]:
         end = turned(last, -quarters)
         done = _ahead(x, y, end)
         x_end, y_end = end if done else (0, radius)
-        yield Piece(x=x, y=y, x_end=x_end, y_end=y_end, x_step=aim((-1, 0), quarters), y_step=aim((0, 1), quarters))
+        x_step, y_step = swapped(turned((-1, 0), quarters)), swapped(turned((0, 1), quarters))
+        yield Piece(x=x, y=y, x_end=x_end, y_end=y_end, x_step=x_step, y_step=y_step)
         x, y, quarters = radius, 0, quarters + 1
 
 
