@@ -47,7 +47,8 @@ class Case:
 
 def command(argv: Sequence[str | Path], cwd: Path | None = None) -> Callable[[], object]:
     """Return a call that runs a whole command, its output thrown away; a command that fails is an error."""
-    return lambda: subprocess.run([str(a) for a in argv], cwd=cwd, stdout=subprocess.DEVNULL, check=True)
+    null = subprocess.DEVNULL
+    return lambda: subprocess.run([str(a) for a in argv], cwd=cwd, stdout=null, stderr=null, check=True)
 
 
 def machine() -> str:
