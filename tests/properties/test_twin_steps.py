@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
@@ -39,11 +37,10 @@ def program(seed):
 def test_twin_stands_on_the_last_step_timed(name, seed):
     machine = load(name)
     walk = program(seed)
-    path = build(walk, machine)
-    trajectory = plan(path, machine, program=walk)
+    trajectory = plan(build(walk, machine), machine, program=walk)
     twin = Twin(machine=machine, period=0.00173)
     recording = gather(twin.header(trajectory), twin.run(trajectory))
-    blocks = list(step_blocks(SimpleNamespace(toolpath=path, blocks=trajectory.blocks), machine, clock=CLOCK))
+    blocks = list(step_blocks(trajectory, machine, clock=CLOCK))
     t = np.minimum(recording.time, trajectory.duration) * CLOCK
     checked = agreed = joints = 0
     for i, joint in enumerate(machine.joints):
