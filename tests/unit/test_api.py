@@ -95,10 +95,10 @@ def test_check_does_not_promise_an_offset_that_would_not_help(mill: object, text
 
 
 def test_check_names_the_first_bad_line_and_counts_the_others(mill: object):
-    verdict = trochia.check("G21 F100\nG1 Q5\nG1 X1\nG1 X+-3\nG77\nM2\n", mill)
+    verdict = trochia.check("G21 F100\nG1 Q5\nG1 X1\nG1 X3Y\nG77\nM2\n", mill)
     assert [(p.line, p.severity.value) for p in verdict.problems] == [(2, "error")]
     assert verdict.more == 2
-    every = trochia.check("G21 F100\nG1 Q5\nG1 X1\nG1 X+-3\nG77\nM2\n", mill, first_only=False)
+    every = trochia.check("G21 F100\nG1 Q5\nG1 X1\nG1 X3Y\nG77\nM2\n", mill, first_only=False)
     assert [p.line for p in every.problems] == [2, 4, 5]
 
 
