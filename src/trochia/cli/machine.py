@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from trochia.cli import machine_show
+from trochia.cli import machine_new, machine_show
 from trochia.cli.machine_file import apply_changes, force, output, problem_data, settings, write_whole
 from trochia.cli.options import as_json, print_json
 from trochia.errors import ConfigError
@@ -146,3 +146,6 @@ def _report(imported: Imported, title: str, file: Path) -> None:
         value = f" = {' '.join(each.setting.value.split())[:60]}" if each.setting.value else ""
         why = "" if each.why == NO_PLACE else f" ({each.why})"
         click.echo(f"    line {each.setting.line}: {each.setting.full_name}{value}{why}", err=True)
+
+
+command.add_command(machine_new.command, "new")

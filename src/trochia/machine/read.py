@@ -45,8 +45,8 @@ def _machine(top: Table) -> Machine:
     """Return the machine; parts that are wrong are noted, and then there is none."""
     book = top.book
     before = len(book.problems)
-    axes = _axes(top)
-    joints, kinematics = _joints(top, axes)
+    axes, rotary = _axes(top)
+    joints, kinematics = _joints(top, rotary)
     io: list[Channel] = []
     for name, table in _section(top, "io").items():
         with book.catch():
@@ -67,9 +67,10 @@ def _section(top: Table, name: str) -> dict[str, Table]:
     return {}
 
 
-def _axes(top: Table) -> tuple[Axis, ...]:
-    """Return the axes in the order of the letters, whatever their order in the file."""
+def _axes(top: Table) -> tuple[tuple[Axis, ...], dict[str, bool]]:
+    """Return the axes in the letters' order, whatever their order in the file, and of every letter if it is rotary."""
     axes: list[Axis] = []
+    rotary: dict[str, bool] = {}
     tables = _section(top, "axes")
     if "axes" not in top:
         with top.book.catch():
@@ -79,29 +80,31 @@ def _axes(top: Table) -> tuple[Axis, ...]:
             check_letter(name)
             kind = cast("AxisKind | None", table.read("kind", cast("Text", keys_of(Axis)["kind"].codec)))
             kind = kind or (AxisKind.ROTARY if name in tuple("ABC") else AxisKind.LINEAR)
-            axes.append(build(table, Axis, rotary=kind is AxisKind.ROTARY, name=name, kind=kind))
-    return tuple(sorted(axes, key=lambda axis: LETTERS.index(axis.name)))
+            rotary[name] = kind is AxisKind.ROTARY
+            axes.append(build(table, Axis, rotary=rotary[name], name=name, kind=kind))
+    ordered = sorted(rotary, key=LETTERS.index)
+    return tuple(sorted(axes, key=lambda axis: ordered.index(axis.name))), {name: rotary[name] for name in ordered}
 
 
-def _joints(top: Table, axes: tuple[Axis, ...]) -> tuple[tuple[Joint, ...], Kinematics | None]:
+def _joints(top: Table, rotary: dict[str, bool]) -> tuple[tuple[Joint, ...], Kinematics | None]:
     """Return the joints in the file's order, and the kinematics that fits them."""
     tables = _section(top, "joints")
     kinematics: Kinematics | None = None
     with top.book.catch():
-        kinematics = _kinematics(top, axes, tables)
+        kinematics = _kinematics(top, tuple(rotary), tables)
     if "joints" not in top:
         with top.book.catch():
             raise top.error("joints", "missing; expected a table for each motor, like [joints.X]")
     joints: list[Joint] = []
     rows = () if kinematics is None else kinematics.matrix  # without it their units are not known: one mistake, no echo
     for row, (name, table) in zip(rows, tables.items(), strict=False):
-        rotary = any(axis.rotary for axis, c in zip(axes, row, strict=True) if c)
+        turns = any(is_rotary for is_rotary, c in zip(rotary.values(), row, strict=True) if c)
         with top.book.catch():
-            joints.append(build(table, Joint, rotary=rotary, name=name))
+            joints.append(build(table, Joint, rotary=turns, name=name))
     return tuple(joints), kinematics
 
 
-def _kinematics(top: Table, axes: tuple[Axis, ...], tables: Mapping[str, Table]) -> Kinematics:
+def _kinematics(top: Table, letters: tuple[str, ...], tables: Mapping[str, Table]) -> Kinematics:
     """Return the kinematics the file names, fitted to axes and joints."""
     kind = top.read("kinematics", Text())
     if kind is None:
@@ -110,10 +113,10 @@ def _kinematics(top: Table, axes: tuple[Axis, ...], tables: Mapping[str, Table])
     if kind not in KINEMATICS:
         raise top.error("kinematics", f"expected one of {', '.join(KINEMATICS)}, not {kind!r}",
                         hint=did_you_mean(kind, KINEMATICS))  # fmt: skip
-    if len(axes) != len(cast("dict[str, object]", top.take("axes") or {})):  # noted; a fit would only echo it
+    if len(letters) != len(cast("dict[str, object]", top.take("axes") or {})):  # noted; a fit would only echo it
         raise Incomplete("axes")
     drives = {name: cast("str | None", table.read("axis", Text())) for name, table in tables.items()}
     try:
-        return KINEMATICS[kind].fit(tuple(axis.name for axis in axes), drives)
+        return KINEMATICS[kind].fit(letters, drives)
     except MachineError as error:
         raise top.book.placed(error) from None

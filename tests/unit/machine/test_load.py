@@ -125,8 +125,8 @@ def test_tells_how_many_more_mistakes_there_are(good: str):
     text = good.replace('"50 mm/s"', "50").replace("microsteps = 4", "microstep = 4").replace('"10 mA"', "10")
     machine, problems = inspect_text(text, "small.toml")
     assert machine is None
-    assert [problem.key for problem in problems] == ["axes.X.velocity", "io.lamp.load"]
-    with pytest.raises(UnitError, match=r"1 more mistake: trochia machine check small.toml"):
+    assert [problem.key for problem in problems] == ["axes.X.velocity", "joints.X.motor.microstep", "io.lamp.load"]
+    with pytest.raises(UnitError, match=r"2 more mistakes: trochia machine check small.toml"):
         loads(text, "small.toml")
 
 

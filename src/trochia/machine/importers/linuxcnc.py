@@ -54,11 +54,6 @@ def read(text: str, file: str) -> Imported:
         _joint(settings, result, index, letter, _unit(letter, linear))
     _path(settings, result, linear)
     _spindle(settings, result)
-    angle = settings.take("TRAJ", "ANGULAR_UNITS")
-    if angle and not angle.value.lower().startswith("deg"):
-        raise settings.error(
-            angle, f"expected degree, not {angle.value!r}", hint="Other angles cannot be imported yet."
-        )
     if name := settings.take("EMC", "MACHINE"):
         result.document["description"] = name.value
     result.unmapped = sorted(result.unmapped + settings.unmapped(), key=lambda each: each.setting.line)
@@ -71,7 +66,12 @@ def _unit(letter: str, linear: _Unit) -> _Unit:
 
 
 def _linear_unit(settings: Settings, result: Imported) -> _Unit:
-    """Return mm or inch."""
+    """Return mm or inch; angles must be in degrees."""
+    angle = settings.take("TRAJ", "ANGULAR_UNITS")
+    if angle and not angle.value.lower().startswith("deg"):
+        raise settings.error(
+            angle, f"expected degree, not {angle.value!r}", hint="Other angles cannot be imported yet."
+        )
     setting = settings.take("TRAJ", "LINEAR_UNITS")
     if setting is None:
         result.assume("lengths in mm: [TRAJ]LINEAR_UNITS is not there")
