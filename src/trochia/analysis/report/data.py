@@ -199,6 +199,12 @@ class ReportData:
             return "no"
         return "warnings" if any(problem.severity is Severity.WARNING for problem in self.problems) else "yes"
 
+    def rapid_samples(self) -> NDArray[np.bool_]:
+        """Return whether each sample (m,) belongs to a source line that moves in rapid."""
+        line = np.zeros(0, np.int64) if self.samples is None else self.samples.line
+        rapid = np.zeros(0, np.int64) if self.programmed is None else self.programmed.line[self.programmed.rapid]
+        return np.isin(line, np.unique(rapid))
+
     def text(self, line: int) -> str:
         """Return source line ``line`` (from 1) without its line ending, or an empty text where there is none."""
         return self.source[line - 1].strip() if 1 <= line <= len(self.source) else ""

@@ -10,7 +10,7 @@ import hashlib
 import json
 import os
 from importlib.resources import files
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from trochia.analysis.report import summary, texts
 from trochia.analysis.report.payload import payload
@@ -86,7 +86,8 @@ def _environment() -> Environment:
     from jinja2 import Environment, StrictUndefined  # noqa: PLC0415 - only a report needs it
 
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-    environment.filters.update(duration=texts.duration, number=texts.number, percent=texts.percent, count=texts.count)
+    filters = cast("dict[str, object]", environment.filters)  # jinja's own type lists only the filters it came with
+    filters.update(duration=texts.duration, number=texts.number, percent=texts.percent, count=texts.count)
     return environment
 
 

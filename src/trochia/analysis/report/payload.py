@@ -47,7 +47,7 @@ def payload(data: ReportData, keep_lines: Iterable[int] = ()) -> Payload:
         ],
         "caps": {"velocity": data.path_velocity, "acceleration": data.path_acceleration},
         "programmed": programmed,
-        "path": None if samples is None else _path(samples, data.programmed),
+        "path": None if samples is None else _path(samples, data.rapid_samples()),
         "channels": None if samples is None else _channels(samples),
         "lines": _texts(data, keep_lines),
     }  # fmt: skip
@@ -76,7 +76,7 @@ def _programmed(path: ProgrammedPath) -> Payload:
     }  # fmt: skip
 
 
-def _path(samples: MotionSamples, programmed: ProgrammedPath | None) -> Payload:
+def _path(samples: MotionSamples, rapid: NDArray[np.bool_]) -> Payload:
     """Return the samples that draw the path, each at its time: position, errors, speed, line, rapid or not."""
     error = samples.following_error
     width = samples.position.shape[1] * (1 if error is None else 3) + 5
@@ -89,16 +89,14 @@ def _path(samples: MotionSamples, programmed: ProgrammedPath | None) -> Payload:
     if error is not None:
         features.append(error / _size(samples.position))
     kept = simplify(samples.time, np.concatenate(features, axis=1), min(PATH_POINTS, _NUMBERS // width))
-    line = samples.line[kept]
-    rapid_lines = np.zeros(0, np.int64) if programmed is None else np.unique(programmed.line[programmed.rapid])
     return {
         "time": pack(samples.time[kept], "f8"),
         "position": _columns(samples.position[kept]),
         "error": None if error is None else _columns(-error[kept]),
         "deviation": None if samples.actual is None else _columns(deviation(samples.position, samples.actual, kept)),
         "speed": pack(samples.speed[kept], "f4"),
-        "line": pack(line, "i4"),
-        "rapid": pack(np.isin(line, rapid_lines), "u1"),
+        "line": pack(samples.line[kept], "i4"),
+        "rapid": pack(rapid[kept], "u1"),
         "of": len(samples.time),
     }
 

@@ -134,7 +134,7 @@ class PathView {
       context.strokeStyle = this.theme.get("programmed");
       strokeRuns(context, points, (i) => !programmed.rapid[i + 1]);
     }
-    if (this.shown.rapids) {
+    if (this.shown.rapids && !this.motion.moves) {
       context.strokeStyle = this.theme.get("rapid");
       context.setLineDash([6, 5]);
       strokeRuns(context, points, (i) => programmed.rapid[i + 1] === 1);

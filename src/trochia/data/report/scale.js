@@ -20,8 +20,9 @@ function niceStep(rough) {
  */
 function ticks(low, high, wanted) {
   if (!(high > low)) return { values: [low], digits: 3 };
-  let step = niceStep((high - low) / Math.max(1, wanted));
-  if ((high - low) / step > 1.6 * wanted) step = niceStep(2.01 * step);
+  const rough = (high - low) / Math.max(1, wanted);
+  let step = niceStep(rough);
+  if (step < 0.8 * rough) step = niceStep(2.6 * step);
   const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
   const values = [];
   for (let i = Math.ceil(low / step - 1e-9); i * step <= high + step * 1e-9; i++) values.push(i * step);
