@@ -7,6 +7,16 @@ int64_t trochia_interpolate(trochia_interpolator *ip, int64_t capacity, uint8_t 
     return made;
 }
 
+int64_t trochia_interpolate_over(const trochia_interpolator *begun, int64_t times) {
+    int64_t sum = 0;
+    for (int64_t i = 0; i < times; i++) {
+        trochia_interpolator ip = *begun;
+        while (trochia_moving(&ip))
+            sum += trochia_interpolate_tick(&ip);
+    }
+    return sum;
+}
+
 void trochia_begin_line(trochia_interpolator *ip, uint8_t method, int32_t x, int32_t y) {
     trochia_line_begin(ip, method, x, y);
 }

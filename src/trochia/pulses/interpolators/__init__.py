@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from trochia.kernels.interpolate import METHODS, arc_pulses, line_pulses
+from trochia.kernels.interpolate import METHODS, Begun
 from trochia.pulses.interpolators import bresenham, dda, difference, octant, point
 from trochia.pulses.interpolators.frame import Arc, Figure, Line, pieces
 from trochia.pulses.port import PortBit
@@ -47,12 +47,16 @@ class Interpolator:
     line_bound: float
     arc_bound: float
 
-    def pulses(self, figure: Figure) -> NDArray[np.uint8]:
-        """Return the pulse byte of each tick (ticks,), by the C core; the bits are ``PortBit``'s first four."""
+    def begin(self, figure: Figure) -> Begun:
+        """Return a figure set up in the C core."""
         method = METHODS[self.name]
         if isinstance(figure, Line):
-            return line_pulses(method, figure.x, figure.y)
-        return arc_pulses(method, figure.start, figure.end, figure.radius_squared, clockwise=figure.clockwise)
+            return Begun.line(method, figure.x, figure.y)
+        return Begun.arc(method, figure.start, figure.end, figure.radius_squared, clockwise=figure.clockwise)
+
+    def pulses(self, figure: Figure) -> NDArray[np.uint8]:
+        """Return the pulse byte of each tick (ticks,), by the C core; the bits are ``PortBit``'s first four."""
+        return self.begin(figure).pulses()
 
     def reference(self, figure: Figure) -> NDArray[np.uint8]:
         """Return the same, by the readable statement in Python."""
@@ -95,13 +99,13 @@ def positions(pulses: NDArray[np.uint8], start: Point = (0, 0)) -> NDArray[np.in
 INTERPOLATORS: dict[str, Interpolator] = {
     row.name: row
     for row in (
-        Interpolator(name="dda", title="DDA", line=dda.line, arc=dda.arc, line_bound=1.0, arc_bound=1.5),
+        Interpolator(name="dda", title="DDA", line=dda.line, arc=dda.arc, line_bound=1.0, arc_bound=2.0),
         Interpolator(name="bresenham", title="Bresenham", line=bresenham.line, arc=bresenham.arc,
                      line_bound=0.5, arc_bound=1.0),
         Interpolator(name="point", title="Point by point", line=point.line, arc=point.arc,
-                     line_bound=1.0, arc_bound=1.5),
+                     line_bound=1.0, arc_bound=1.25),
         Interpolator(name="difference", title="Coordinate difference", line=difference.line, arc=difference.arc,
-                     line_bound=1.0, arc_bound=1.5),
+                     line_bound=1.5, arc_bound=2.0),
         Interpolator(name="octant", title="Octant function", line=octant.line, arc=octant.arc,
                      line_bound=0.5, arc_bound=1.0),
     )
