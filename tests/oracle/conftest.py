@@ -1,0 +1,93 @@
+"""LinuxCNC's stand-alone interpreter as a judge: what it prints, and where it stops."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from trochia.errors import ProgramError
+from trochia.languages.gcode.canon import Canon
+from trochia.languages.gcode.interpreter import interpret
+from trochia.program import WorkState
+
+RS274 = shutil.which("rs274")
+TOLERANCE = 1.001e-4  # both round to four decimals
+_COLUMNS = re.compile(r"^ *\d+ (?:N\.{5}|N\d+|N {5}) *(?=[A-Z])")  # counter and line number
+_NUMBER = re.compile(r"-?\d+\.\d+")
+
+
+@dataclass(frozen=True)
+class Run:
+    """Canonical lines, and the text of the line that was rejected (None: accepted)."""
+
+    lines: list[str]
+    rejected: str | None
+    why: str
+
+
+def reference(text: bytes, variables: str | None = None) -> Run:
+    """Return what ``rs274 -g`` says; it rewrites its variable file, so it runs in a directory of its own."""
+    assert RS274 is not None
+    with tempfile.TemporaryDirectory() as folder:
+        Path(folder, "program.ngc").write_bytes(text)
+        extra: list[str] = []
+        if variables is not None:
+            Path(folder, "work.var").write_text(variables, encoding="ascii")
+            extra = ["-v", "work.var"]
+        for _ in range(3):  # once in some thousand runs it dies without a word
+            done = subprocess.run(
+                [RS274, "-g", *extra, "program.ngc"], cwd=folder, capture_output=True, timeout=20, check=False
+            )
+            said = [line for line in done.stderr.decode("latin-1").split("\n") if line != "executing"]
+            if done.returncode == 0 or len(said) > 1:
+                break
+    lines = [_COLUMNS.sub("", line, count=1) for line in done.stdout.decode("latin-1").split("\n")[:-1]]
+    return Run(lines, said[1] if done.returncode else None, said[0])
+
+
+def ours(text: bytes, *, fast: bool, work: WorkState) -> Run:
+    """Return what our interpreter says."""
+    out: list[bytes] = []
+    rejected, why = None, ""
+    try:
+        interpret(text, Canon(out.append), name="program.ngc", fast=fast, work=work)
+    except ProgramError as error:
+        rejected, why = error.text, str(error)
+    return Run(b"".join(out).decode("latin-1").split("\n")[:-1], rejected, why)
+
+
+def alike(left: str, right: str) -> bool:
+    """Return whether two canonical lines say the same, numbers within the tolerance."""
+    if left == right:
+        return True
+    if _NUMBER.sub("#", left) != _NUMBER.sub("#", right):
+        return False
+    pairs = zip(_NUMBER.findall(left), _NUMBER.findall(right), strict=True)
+    return all(abs(float(a) - float(b)) <= TOLERANCE for a, b in pairs)
+
+
+def compare(text: bytes, *, variables: str | None = None, work: WorkState | None = None) -> None:
+    """Assert that we accept or reject a program as the reference does, at the same line, with the same output."""
+    judge = reference(text, variables)
+    for fast in (False, True):
+        run = ours(text, fast=fast, work=work or WorkState())
+        for number, (theirs, mine) in enumerate(zip(judge.lines, run.lines, strict=False)):
+            assert alike(theirs, mine), f"fast={fast}, canonical line {number}: reference {theirs!r}, ours {mine!r}"
+        assert (judge.rejected is None) == (run.rejected is None), f"reference: {judge.why!r}; ours: {run.why}"
+        assert len(judge.lines) == len(run.lines), f"fast={fast}: {judge.lines[-3:]} against {run.lines[-3:]}"
+        if judge.rejected is not None and run.rejected is not None:
+            assert judge.rejected.strip() == run.rejected.strip(), f"reference: {judge.why!r}; ours: {run.why}"
+
+
+@pytest.fixture(scope="session")
+def agree():
+    """Return :func:`compare`, or skip where the reference is not installed."""
+    if RS274 is None:
+        pytest.skip("LinuxCNC's rs274 is not installed (Debian package linuxcnc-uspace)")
+    return compare
