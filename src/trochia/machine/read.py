@@ -113,7 +113,9 @@ def _kinematics(top: Table, letters: tuple[str, ...], tables: Mapping[str, Table
     if kind not in KINEMATICS:
         raise top.error("kinematics", f"expected one of {', '.join(KINEMATICS)}, not {kind!r}",
                         hint=did_you_mean(kind, KINEMATICS))  # fmt: skip
-    if len(letters) != len(cast("dict[str, object]", top.take("axes") or {})):  # noted; a fit would only echo it
+    declared = cast("object", top.take("axes"))
+    if not isinstance(declared, dict) or len(letters) != len(cast("dict[str, object]", declared)):
+        # noted already; a fit would only echo it
         raise Incomplete("axes")
     drives = {name: cast("str | None", table.read("axis", Text())) for name, table in tables.items()}
     try:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -170,3 +171,33 @@ def test_byte_order_mark_and_crlf_are_taken(tmp_path: Path, good: str):
     path = tmp_path / "windows.toml"
     path.write_bytes(b"\xef\xbb\xbf" + good.replace("\n", "\r\n").encode())
     assert load(path) == loads(good)
+
+
+ODD = ["0", "-1", "true", '""', '"\\u0000"', "[]", "[1, 2]", "{}", "{ kind = 5 }", "1979-05-27", "nan", "inf", "1e300",
+       '"1e999999999 mm"', '"1e300 m/s"', '"none"', "99999999999999999999999"]  # fmt: skip
+
+
+@pytest.mark.parametrize("odd", ODD)
+def test_an_odd_value_anywhere_is_an_error_or_a_machine_but_never_a_crash(good: str, odd: str):
+    lines = good.splitlines()
+    for number, line in enumerate(lines):
+        name, equals, _ = line.partition("=")
+        if equals:
+            text = "\n".join([*lines[:number], f"{name}= {odd}", *lines[number + 1 :]])
+            machine, problems = inspect_text(text, "odd.toml")
+            assert (machine is None) == bool(problems)
+            assert all(problem.source is not None for problem in problems)
+
+
+@pytest.mark.parametrize("odd", ODD)
+@pytest.mark.parametrize("table", ["axes", "axes.X", "joints", "joints.X", "path", "spindle", "beam", "io", "io.lamp"])
+def test_an_odd_value_for_a_table_is_an_error(good: str, table: str, odd: str):
+    document = re.sub(rf"^\[{re.escape(table)}(\.\w+)?\]\n(.+\n)*", "", good, flags=re.MULTILINE)
+    head, _, rest = document.partition("\n\n")
+    outer, _, inner = table.rpartition(".")
+    document = f"{head}\n{table} = {odd}\n\n{rest}" if not outer else f"{document}\n[{outer}]\n{inner} = {odd}\n"
+    machine, problems = inspect_text(document, "odd.toml")
+    if odd in {"{}", "[]"} and machine is not None:
+        assert table in {"path", "io", "io.lamp"}
+    else:
+        assert problems
