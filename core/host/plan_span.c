@@ -11,13 +11,18 @@
 #include <math.h>
 
 static const double ARC_PART = 0.0873; /* rad: 5 degrees sag by half a per cent of the acceleration */
+static const double ARC_FINE =
+    0.0175;                         /* rad: on wide arcs, where a piece is long enough to change speed in, 1 degree */
+static const double ARC_LONG = 2.0; /* mm: that long */
 static const double CUBIC_SAG = 0.02;
 
 uint32_t trochia_span_parts(const trochia_segment *segment, const double *pool, uint32_t n) {
     const double *c = pool + segment->data;
     double parts = 1.0, length = segment->length;
-    if (segment->kind == TROCHIA_ARC_SEGMENT)
-        parts = ceil(fabs(length * (c[4] + c[6 + 2 * n] * length)) / ARC_PART);
+    if (segment->kind == TROCHIA_ARC_SEGMENT) {
+        double sweep = fabs(length * (c[4] + c[6 + 2 * n] * length));
+        parts = fmax(ceil(sweep / ARC_PART), fmin(ceil(sweep / ARC_FINE), ceil(length / ARC_LONG)));
+    }
     if (segment->kind == TROCHIA_CUBIC) {
         double third = 0.0;
         for (uint32_t i = 0; i < n; i++)

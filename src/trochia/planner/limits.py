@@ -1,14 +1,14 @@
 """What binds a path.  In: a Machine.  Out: rows of limited quantities q = C x, and caps on the vector.
 
 The axes come first (C begins with the unit matrix); then the joints that carry limits of their own, through the
-kinematic matrix.  Legend: C rows over axes, V and A limits of q' and q'' in time.
+kinematic matrix.  Joints that move alike share a row, with the least of their limits.  Legend: C rows over axes.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -49,24 +49,45 @@ class Limits:
     @classmethod
     def of(cls, machine: Machine) -> Limits:
         """Return the limits of a machine."""
-        axes = [(f"axis {a.name}", a.velocity, a.acceleration, _or_inf(a.jerk)) for a in machine.axes]
-        rows = list(np.eye(len(axes)))
+        rows = {_key(row): _Row(f"axis {a.name}", a.velocity, a.acceleration, _or_inf(a.jerk))
+                for row, a in zip(np.eye(len(machine.axes)), machine.axes, strict=True)}  # fmt: skip
         for joint, row in zip(machine.joints, machine.kinematics.matrix, strict=True):
-            if joint.velocity is not None or joint.acceleration is not None or joint.jerk is not None:
-                own = (_or_inf(joint.velocity), _or_inf(joint.acceleration), _or_inf(joint.jerk))
-                axes.append((f"joint {joint.name}", *own))
-                rows.append(row)
+            own = _Row(f"joint {joint.name}", *map(_or_inf, (joint.velocity, joint.acceleration, joint.jerk)))
+            if own[1:] != (math.inf, math.inf, math.inf):
+                rows[_key(row)] = own.tighten(rows.get(_key(row)))
         return cls(
-            names=tuple(name for name, *_ in axes),
-            matrix=np.array(rows, dtype=np.float64),
-            velocity=np.array([row[1] for row in axes]),
-            acceleration=np.array([row[2] for row in axes]),
-            jerk=np.array([row[3] for row in axes]),
+            names=tuple(row.name for row in rows.values()),
+            matrix=np.array(list(rows), dtype=np.float64),
+            velocity=np.array([row.velocity for row in rows.values()]),
+            acceleration=np.array([row.acceleration for row in rows.values()]),
+            jerk=np.array([row.jerk for row in rows.values()]),
             path_velocity=_or_inf(machine.path.velocity),
             path_acceleration=_or_inf(machine.path.acceleration),
             path_jerk=_or_inf(machine.path.jerk),
             linear=sum(axis.name in "XYZ" for axis in machine.axes),
         )
+
+
+class _Row(NamedTuple):
+    """One limited quantity before it is a row of arrays."""
+
+    name: str
+    velocity: float
+    acceleration: float
+    jerk: float
+
+    def tighten(self, other: _Row | None) -> _Row:
+        """Return the least of both under the name of the first that is below the other."""
+        if other is None:
+            return self
+        binds = any(mine < theirs for mine, theirs in zip(self[1:], other[1:], strict=True))
+        return _Row(self.name if binds else other.name, *map(min, self[1:], other[1:]))
+
+
+def _key(row: NDArray[np.float64]) -> tuple[float, ...]:
+    """Return a row of C as a key: the same quantity whichever way the joint counts."""
+    leading = next((c for c in row if c != 0.0), 1.0)
+    return tuple(float(c) + 0.0 for c in (row if leading > 0 else -row))
 
 
 def _or_inf(value: float | None) -> float:
