@@ -22,6 +22,7 @@ HEADERS = [
     "shared/interpolate.h",
     "host/interpolate.h",
     "host/gcode.h",
+    "host/placement.h",
     "host/twin.h",
     "host/contour.h",
 ]

@@ -41,10 +41,9 @@ def read(
     """
     from trochia.languages.gcode.builder import Builder  # noqa: PLC0415 - only programs need numpy
 
-    sink = Builder(name, start)
-    lines = interpret(
-        _as_bytes(text), sink, name=name, work=work, start=start, axes=axes, block_delete=block_delete
-    )  # fmt: skip
+    data = _as_bytes(text)
+    sink = Builder(name, start, room=data.count(b"\n") + 1)
+    lines = interpret(data, sink, name=name, work=work, start=start, axes=axes, block_delete=block_delete)
     return sink.program(lines)
 
 
