@@ -10,8 +10,10 @@ from hypothesis import strategies as st
 
 from trochia.errors import ProgramError
 from trochia.kernels.gcode import COMMENT_ROW, FEED_ROW, Rows
+from trochia.languages.gcode.builder import Builder
 from trochia.languages.gcode.canon import Canon
 from trochia.languages.gcode.interpreter import blocks
+from trochia.program import WorkState
 
 STRAIGHT = ("straight_traverse", "straight_feed")
 
@@ -162,6 +164,21 @@ def programs(draw: st.DrawFn) -> bytes:
 @example(text=b"G91 F1\n" + b"G1 X.1 (x)\n" * 3000 + b"M2\n")
 def test_fast_path_changes_nothing(text: bytes, *, go_on: bool) -> None:
     assert outcome(text, fast=True, go_on=go_on) == outcome(text, fast=False, go_on=go_on)
+
+
+@given(text=programs(), degrees=st.sampled_from([0.0, 0.0, 30.0]), room=st.sampled_from([0, 1000]))
+def test_fast_path_builds_the_same_program(text: bytes, degrees: float, room: int) -> None:
+    work = WorkState(rotations=(degrees,) + (0.0,) * 8).placed(X=1.5, A=2.0)
+    built: list[object] = []
+    for fast in (True, False):
+        builder = Builder("p", (0.5,) * 9, room)
+        try:
+            lines = max(blocks(text, builder, name="p", work=work, start=(0.5,) * 9, fast=fast))
+            program = builder.program(lines)
+            built.append((program.moves.tobytes(), program.actions, program.lines))
+        except ProgramError as error:
+            built.append(str(error))
+    assert built[0] == built[1]
 
 
 @given(data=st.binary(max_size=120))
