@@ -1,9 +1,9 @@
 """Sphinx: the documentation, in MyST Markdown; `make docs` fails on any warning."""
 
-from importlib.metadata import version
+from importlib import metadata
 
 project = "Trochia"
-release = version("trochia")
+release = metadata.version("trochia")
 author = copyright = "the Trochia authors"
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.viewcode"]
 myst_enable_extensions = ["dollarmath", "colon_fence", "deflist"]
