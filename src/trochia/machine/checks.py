@@ -94,10 +94,10 @@ def _check_joint(machine: Machine, index: int) -> None:
     if joint.backlash >= widest:
         raise ConfigError(f"must be less than the travel ({widest:g}), not {joint.backlash:g}",
                           key=f"joints.{joint.name}.backlash")  # fmt: skip
-    _check_rate(joint, step_rate(machine, index), joint_velocity(machine, index))
+    _check_rate(joint, step_rate(machine, index), joint_velocity(machine, index), moved[0].unit)
 
 
-def _check_rate(joint: Joint, rate: float | None, velocity: float) -> None:
+def _check_rate(joint: Joint, rate: float | None, velocity: float, unit: str) -> None:
     """Hold the step rate to the driver's own limit and to its pulse timing."""
     if rate is None:
         if joint.pulse_rate is not None:
@@ -113,9 +113,9 @@ def _check_rate(joint: Joint, rate: float | None, velocity: float) -> None:
     if rate > greatest * (1 + 1e-9):
         fits = velocity * greatest / rate
         raise ConfigError(
-            f"at {velocity:g} a second the joint needs {rate:.6g} steps/s, its {why} {greatest:.6g}",
+            f"at {velocity:g} {unit}/s the joint needs {rate:.6g} steps/s, its {why} {greatest:.6g}",
             key=f"joints.{joint.name}.velocity",
-            hint=f"Give the joint (or its axis) at most {fits:.6g} a second, or fewer microsteps, or a faster driver.",
+            hint=f"Give the joint (or its axis) at most {fits:.6g} {unit}/s, or fewer microsteps, or a faster driver.",
         )
 
 

@@ -27,7 +27,8 @@ def places(text: str) -> dict[tuple[str, ...], Place]:
                 found.setdefault(table[:length], (number, header.start(1) + 1))
         elif entry := _KEY.match(line):
             name = table + _parts(entry.group(1))
-            found.setdefault(name, (number, entry.start(1) + 1))
+            for length in range(len(table) + 1, len(name) + 1):
+                found.setdefault(name[:length], (number, entry.start(1) + 1))
             for inner in _INLINE.finditer(line, entry.end()):
                 found.setdefault(name + _parts(inner.group(1)), (number, inner.start(1) + 1))
     return found

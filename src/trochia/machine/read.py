@@ -113,7 +113,7 @@ def _kinematics(top: Table, letters: tuple[str, ...], tables: Mapping[str, Table
     if kind not in KINEMATICS:
         raise top.error("kinematics", f"expected one of {', '.join(KINEMATICS)}, not {kind!r}",
                         hint=did_you_mean(kind, KINEMATICS))  # fmt: skip
-    declared = cast("object", top.take("axes"))
+    declared = top.take("axes")
     if not isinstance(declared, dict) or len(letters) != len(cast("dict[str, object]", declared)):
         # noted already; a fit would only echo it
         raise Incomplete("axes")
