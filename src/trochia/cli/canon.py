@@ -15,7 +15,7 @@ import click
 from trochia.cli import options
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Generator
 
 
 @click.command()
@@ -69,7 +69,7 @@ def _print_json(text: bytes, name: str, *, block_delete: bool) -> None:
 
 
 @contextmanager
-def _whole_file(path: Path) -> Iterator[BinaryIO]:
+def _whole_file(path: Path) -> Generator[BinaryIO]:
     """Give a file that takes its name only when all of it is written."""
     with tempfile.NamedTemporaryFile(dir=path.parent, prefix=path.name, delete=False) as out:
         try:

@@ -55,6 +55,14 @@ class Block:
     motion: Code | None = None
     in_machine: bool = False
 
+    @property
+    def mover(self) -> str:
+        """The word to point at when the line's motion is at fault: its code, or the first axis or centre word."""
+        if self.motion is not None and self.motion.name in self.where:
+            return self.motion.name
+        movers = [letter for letter in self.values if letter in AXIS or letter in "ijkr"]
+        return min(movers, key=self.where.__getitem__, default="")
+
     def fault(self, kind: type[_Error], message: str, word: str = "", *, hint: str | None = None) -> _Error:
         """Return an error of that kind that points at a word, by its letter or code (none: the whole line)."""
         return self.place.fault(kind, message, self.where.get(word), hint=hint)

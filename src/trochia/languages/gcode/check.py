@@ -77,7 +77,7 @@ def _check_readers(block: Block) -> None:
     for letter in block.values:
         if letter not in _OPEN and not any(letter in code.words for code in readers):
             users = sorted({code.name for code in G_CODES.values() if letter in code.words})
-            hint = f"{' '.join(users)} read it." if users else "No code known here reads it."
+            hint = f"It is read by {' '.join(users)}." if users else "No code known here reads it."
             raise block.fault(ParseError, f"no code on this line reads the word {letter.upper()}", letter, hint=hint)
 
 
@@ -110,4 +110,4 @@ def _check_machine_coordinates(block: Block, state: State) -> None:
 def _check_turns(block: Block) -> None:
     turns = as_integer(block.values["p"], _WHOLE_TURNS)
     if turns is None or turns < 1:
-        raise block.fault(ParseError, "P of an arc counts its turns: 1, 2, 3 …", "p")
+        raise block.fault(ParseError, "P of an arc counts its turns: 1, 2, 3 and so on", "p")

@@ -44,4 +44,5 @@ class Place:
     def fault(self, kind: type[_Error], message: str, index: int | None = None, *, hint: str | None = None) -> _Error:
         """Return an error of that kind at this line; ``index`` counts in the compact line (None: the whole line)."""
         column = 0 if index is None else column_of(self.raw, index)
-        return kind(message, source=Source(self.file, self.line, column), text=self.raw.decode("latin-1"), hint=hint)
+        text = self.raw.decode("latin-1") if self.raw else None
+        return kind(message, source=Source(self.file, self.line, column), text=text, hint=hint)

@@ -23,6 +23,13 @@ _LINE_NUMBER = re.compile(r"n[0-9]+(?:\.[0-9]+)?")
 _COMMENT = re.compile(rb"\(([^()]*)\)")
 _LATER = {"#": "parameters", "o": "subroutines and loops (O-words)", "@": "polar words", "^": "polar words",
           "$": "spindle numbers", "[": "expressions"}  # fmt: skip
+_HINTS = {
+    "/": "Block delete stands at the beginning of the line.",
+    "n": "A line number is the first word of its line: N10.",
+    "%": "A line % ends a program only if the program begins with one.",
+    ")": "There is no ( before it.",
+    "\xef": "Save the file without a byte order mark.",
+}
 
 
 @dataclass(slots=True)
@@ -47,7 +54,7 @@ def read_line(place: Place) -> Line:
     """
     raw = place.raw.rstrip()
     if len(place.raw.rstrip(b"\n")) > LONGEST_LINE:
-        raise place.fault(ParseError, f"the line is longer than {LONGEST_LINE} characters", LONGEST_LINE,
+        raise place.fault(ParseError, f"the line is longer than {LONGEST_LINE} characters",
                           hint="Break it, or shorten the comment.")  # fmt: skip
     comment = None
     if b"(" in raw or b";" in raw:
@@ -80,10 +87,8 @@ def _bad_character(letter: str, at: int, place: Place) -> ParseError | UnknownCo
     """Return the error for a character that begins no word."""
     if letter in _LATER:
         return place.fault(UnknownCodeError, f"{letter.upper()!r}: {_LATER[letter]} are not known here", at)
-    hints = {"/": "Block delete stands at the beginning of the line.", "n": "A line number is the first word: N10.",
-             "%": "A program begins and ends with a line % only if % is its first line.",
-             ")": "There is no ( before it."}  # fmt: skip
-    return place.fault(ParseError, f"{letter!r} begins no word", at, hint=hints.get(letter))
+    hint = "A number stands behind its letter." if letter in ".+-0123456789" else _HINTS.get(letter)
+    return place.fault(ParseError, f"{letter.upper()!r} begins no word", at, hint=hint)
 
 
 def _without_comments(raw: bytes, place: Place) -> tuple[bytes, str | None]:

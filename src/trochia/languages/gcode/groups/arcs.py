@@ -75,7 +75,7 @@ def _form_of(block: Block, state: State) -> str:
             raise block.fault(ParseError, f"an arc by R needs its end: {plane[0]} or {plane[1]}", "r")
         return "radius"
     if not offsets:
-        raise block.fault(ParseError, "an arc needs its centre or its radius", _code_of(block),
+        raise block.fault(ParseError, "an arc needs its centre or its radius", block.mover,
                           hint=f"Write {first.upper()} {second.upper()}, or R; or G1 for a line.")  # fmt: skip
     for letter in offsets:
         if letter not in (first, second):
@@ -83,13 +83,8 @@ def _form_of(block: Block, state: State) -> str:
                               hint=f"Use {first.upper()} {second.upper()}, or change the plane.")  # fmt: skip
     for letter in (first, second):
         if state.arc_absolute and letter not in block.values:
-            raise block.fault(ParseError, f"an absolute centre (G90.1) needs {letter.upper()} too", _code_of(block))
+            raise block.fault(ParseError, f"an absolute centre (G90.1) needs {letter.upper()} too", block.mover)
     return "centre"
-
-
-def _code_of(block: Block) -> str:
-    """Return the code to point at; a modal arc has none on its line."""
-    return block.motion.name if block.motion is not None else ""
 
 
 def _centre_by_offsets(block: Block, state: State, start: Point) -> Point:
@@ -107,12 +102,12 @@ def _check_radii(block: Block, state: State, start: Point, end: Point, centre: P
     unit = "inch" if state.inch else "mm"
     if min(begin_radius, end_radius) < SHORT_RADIUS[state.inch]:
         raise block.fault(ModalConflictError, f"an arc of radius {min(begin_radius, end_radius):.5f} {unit}",
-                          _code_of(block), hint="Start or end lies on the centre.")  # fmt: skip
+                          block.mover, hint="Start or end lies on the centre.")  # fmt: skip
     difference = abs(begin_radius - end_radius)
     share = difference / max(begin_radius, end_radius)
     if difference > SPIRAL_MOST[state.inch] or (difference > SPIRAL[state.inch] and share > SPIRAL_SHARE):
         raise block.fault(ModalConflictError, f"the arc begins at radius {begin_radius:.4f} {unit} and ends at "
-                          f"{end_radius:.4f} {unit}", _code_of(block),
+                          f"{end_radius:.4f} {unit}", block.mover,
                           hint=f"They may differ by {SPIRAL[state.inch]:.4f} {unit} or by {SPIRAL_SHARE:.1%}: correct "
                           "the end or the centre.")  # fmt: skip
 

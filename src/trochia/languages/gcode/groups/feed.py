@@ -38,7 +38,8 @@ F = WordCode(letter="f", about="feed", step="feed", run=set_feed)
 
 _GROUP = "feed mode"
 G_CODES = table(
-    Code(name="G93", about="F is moves per minute", group=_GROUP, step=_GROUP, run=_use(TimeLaw.INVERSE, "inverse time")),
+    Code(name="G93", about="F is moves per minute", group=_GROUP, step=_GROUP,
+         run=_use(TimeLaw.INVERSE, "inverse time")),
     Code(name="G94", about="F is units per minute", group=_GROUP, step=_GROUP,
          run=_use(TimeLaw.PER_SECOND, "units per minute")),
     Code(name="G95", about="F is units per revolution", group=_GROUP, step=_GROUP,

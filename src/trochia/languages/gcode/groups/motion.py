@@ -77,12 +77,12 @@ def require_feed(block: Block, state: State) -> None:
     """
     if state.law == TimeLaw.INVERSE:
         if "f" not in block.values:
-            raise block.fault(ParseError, "in inverse time (G93) every feed move needs its own F",
+            raise block.fault(ParseError, "in inverse time (G93) every feed move needs its own F", block.mover,
                               hint="Write F, in moves per minute, or go back to G94.")  # fmt: skip
     elif state.feed == 0.0:
-        raise block.fault(ModalConflictError, "this move has no feed", hint=_feed_hint(block, state))
+        raise block.fault(ModalConflictError, "this move has no feed", block.mover, hint=_feed_hint(block, state))
     elif state.law == TimeLaw.PER_REV and state.speed == 0.0:
-        raise block.fault(ModalConflictError, "feed per revolution (G95), but the spindle speed is zero",
+        raise block.fault(ModalConflictError, "feed per revolution (G95), but the spindle speed is zero", block.mover,
                           hint="Write S, and M3 or M4, before it.")  # fmt: skip
 
 

@@ -50,8 +50,8 @@ def _apply(shift: list[float], state: State, sink: Sink) -> None:
 
 
 G_CODES = table(
-    Code(name="G92", about="call the current point by these coordinates", group="non-modal", step="non-modal", run=set_here,
-         takes_axes=True),
+    Code(name="G92", about="call the current point by these coordinates", group="non-modal", step="non-modal",
+         run=set_here, takes_axes=True),
     Code(name="G92.1", about="no shift, forget it", group="shift", step="shift", run=clear),
     Code(name="G92.2", about="no shift, keep it", group="shift", step="shift", run=suspend),
     Code(name="G92.3", about="apply the kept shift", group="shift", step="shift", run=restore),
