@@ -203,7 +203,7 @@ class ReportData:
         """Return whether each sample (m,) belongs to a source line that moves in rapid."""
         line = np.zeros(0, np.int64) if self.samples is None else self.samples.line
         rapid = np.zeros(0, np.int64) if self.programmed is None else self.programmed.line[self.programmed.rapid]
-        return np.isin(line, np.unique(rapid))
+        return np.isin(line, rapid)
 
     def text(self, line: int) -> str:
         """Return source line ``line`` (from 1) without its line ending, or an empty text where there is none."""

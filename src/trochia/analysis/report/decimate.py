@@ -54,30 +54,36 @@ def simplify(parameter: Floats, features: Floats, limit: int) -> Indices:
 
     A point is worth the distance between it and where its neighbours, joined linearly in ``parameter`` (n,), put it,
     measured in ``features`` (n, d) that the caller has scaled.  With time as parameter this is the *synchronous*
-    distance: the shorter path is in the right place at the right time (Meratnia and de By, 2004).  Passes drop the
-    least worthy of every other point, so that no pass takes two neighbours.
+    distance: the shorter path is in the right place at the right time (Meratnia and de By, 2004).  A pass drops the
+    less worthy half, but only every other point, so that no pass takes two neighbours.
     """
-    kept = np.arange(0, parameter.shape[0], -(-parameter.shape[0] // _DENSE) or 1)
-    anchors = _anchors(features)
-    kept = np.union1d(kept, anchors)
+    anchored = _anchored(features)
+    chosen = anchored.copy()
+    chosen[:: -(-parameter.shape[0] // _DENSE) or 1] = True
+    kept = np.flatnonzero(chosen)
+    goal = max(limit, int(np.count_nonzero(anchored)))
     parity = 0
-    while kept.size > max(limit, anchors.size):
-        candidates = np.arange(1 + parity, kept.size - 1, 2)
-        candidates = candidates[~np.isin(kept[candidates], anchors, assume_unique=True)]
+    while kept.size > goal:
+        inner = np.flatnonzero(~anchored[kept])
+        worth = _worth(parameter, features, kept, inner)
+        flat = worth <= np.partition(worth, (inner.size - 1) // 2)[(inner.size - 1) // 2]
+        turn = flat & (inner % 2 == parity)
+        drop, surplus = inner[turn], kept.size - goal
+        if drop.size > surplus:
+            drop = drop[np.argpartition(worth[turn], surplus - 1)[:surplus]]
+        kept = np.delete(kept, drop)
         parity ^= 1
-        if candidates.size:
-            share = min(kept.size - max(limit, anchors.size), max(1, candidates.size // 2))
-            worth = _worth(parameter, features, kept, candidates)
-            kept = np.delete(kept, candidates[np.argpartition(worth, share - 1)[:share]])
     return kept
 
 
-def _anchors(features: Floats) -> Indices:
-    """Return both ends and the extremes of every feature."""
-    if not features.shape[0]:
-        return np.zeros(0, np.int64)
-    ends = np.array((0, features.shape[0] - 1))
-    return np.unique(np.concatenate((ends, features.argmin(axis=0), features.argmax(axis=0))))
+def _anchored(features: Floats) -> NDArray[np.bool_]:
+    """Return whether each point is one of both ends or an extreme of a feature."""
+    anchored = np.zeros(features.shape[0], np.bool_)
+    if features.shape[0]:
+        anchored[[0, -1]] = True
+        anchored[features.argmin(axis=0)] = True
+        anchored[features.argmax(axis=0)] = True
+    return anchored
 
 
 def _worth(parameter: Floats, features: Floats, kept: Indices, candidates: Indices) -> Floats:

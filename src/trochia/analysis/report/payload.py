@@ -127,10 +127,11 @@ def _size(points: NDArray[np.float64]) -> float:
 
 def _texts(data: ReportData, keep: Iterable[int]) -> dict[int, str]:
     """Return source texts by line number: those to keep, then as many as the budget allows, evenly spread."""
-    used = [np.zeros(0, np.int64)]
-    used += [part.line for part in (data.programmed, data.samples) if part is not None]
-    lines = np.unique(np.concatenate(used))
-    lines = lines[(lines >= 1) & (lines <= len(data.source))]
+    used = np.zeros(len(data.source) + 1, np.bool_)
+    for part in (data.programmed, data.samples):
+        if part is not None:
+            used[part.line[(part.line >= 1) & (part.line <= len(data.source))]] = True
+    lines = np.flatnonzero(used)
     if not len(lines):
         return {line: data.text(line)[:_TEXT_WIDTH] for line in sorted(set(keep))}
     probe = lines[:: max(1, len(lines) // 500)].tolist()
