@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from trochia.pulses.interpolators import Figure, Interpolator
     from trochia.pulses.interpolators.compare import Merit
 
-LARGEST = 1_000_000  #: coordinates and radii [steps]: some million ticks a method, a second in all
+LARGEST = 100_000  #: coordinates and radii [steps]: most of a million ticks a method, a second in all
 _SHORT = 64  # ticks: a figure no longer than this has its pulses printed
 
 _method = click.option("--method", "name", default=None, metavar="NAME",
@@ -129,6 +129,8 @@ def _report(
     from trochia.pulses.interpolators.compare import merit  # noqa: PLC0415 - `trochia --help` must stay light
 
     methods = _chosen(name, compare=compare)
+    if plot is not None and not Path(plot).parent.is_dir():
+        raise click.BadParameter(f"there is no folder {Path(plot).parent}", param_hint="--plot")
     merits = [merit(method, figure) for method in methods]
     if plot is not None:
         _draw(Path(plot), figure, methods, title)
