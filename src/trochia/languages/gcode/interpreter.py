@@ -194,13 +194,12 @@ class _Walk:
 
     def _run(self, place: Place) -> None:
         """Run one line, or hand its error over."""
+        if self._block_delete and place.raw.lstrip()[:1] == b"/":
+            return
         self._sink.line = place.line
         block: Block | None = None
         try:
-            read = read_line(place)
-            if read.delete and self._block_delete:
-                return
-            block = sort_words(read, self._axes)
+            block = sort_words(read_line(place), self._axes)
             check(block, self._state)
             execute(block, self._state, self._sink)
         except ProgramError as error:

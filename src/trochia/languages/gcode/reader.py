@@ -1,6 +1,6 @@
 """One line of text to words.
 
-In: the raw bytes of a line.  Out: :class:`Line`: block-delete mark, words in their order (letter, value, index into the
+In: the raw bytes of a line.  Out: :class:`Line`: words in their order (letter, value, index into the
 compact line), and the last comment.  Nothing here knows what a word means.
 
 RS274 reads a line without its blanks and without regard to case; ``( )`` and ``;`` hold comments.
@@ -37,7 +37,6 @@ class Line:
     """A line taken apart.  ``comment`` is the text between the last pair of brackets, leading blanks left out."""
 
     place: Place
-    delete: bool
     words: list[Word]
     comment: str | None
 
@@ -60,10 +59,9 @@ def read_line(place: Place) -> Line:
     if b"(" in raw or b";" in raw:
         raw, comment = _without_comments(raw, place)
     text = raw.translate(None, BLANKS).lower().decode("latin-1")
-    delete = text[:1] == "/"
-    at = 1 if delete else 0
+    at = 1 if text[:1] == "/" else 0  # block delete is off, or the line would not be read
     number = _LINE_NUMBER.match(text, at)
-    return Line(place, delete, _words(text, number.end() if number else at, place), comment)
+    return Line(place, _words(text, number.end() if number else at, place), comment)
 
 
 def _words(text: str, at: int, place: Place) -> list[Word]:
