@@ -63,6 +63,13 @@ def in_process(path: Path) -> None:
         canon.print_program(path, out)
 
 
+def program_of(path: Path) -> object:
+    """Return the program of a file: moves in machine coordinates, and actions."""
+    from trochia.languages import gcode  # noqa: PLC0415 - likewise
+
+    return gcode.read(path.read_bytes())
+
+
 def columns(path: Path) -> int:
     """Read all plain lines of a program into rows of columns; return their number."""
     from trochia.kernels.gcode import STOP_LINE, PlainReader  # noqa: PLC0415 - likewise
@@ -89,6 +96,7 @@ def main() -> None:
                 Case(name="trochia canon", call=command([ours, "canon", path]), count=count, target=600_000),
                 Case(name="in process", call=lambda p=path: in_process(p), count=count, target=2_000_000),
                 Case(name="to columns", call=lambda p=path: columns(p), count=count, target=5_000_000),
+                Case(name="to a program", call=lambda p=path: program_of(p), count=count, target=5_000_000),
             ]
             if reference:
                 call = command([reference, "-g", path], Path(folder))
