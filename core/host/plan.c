@@ -1,6 +1,7 @@
 /* The two passes: backward, how fast may each joint be passed so that all that follows still can be kept; forward, how
  * fast it is reached.  Neither looks at more than one piece, so the whole is linear in the program's length. */
 #include <math.h>
+#include <stddef.h>
 
 #include "host/plan_span.h"
 
@@ -27,7 +28,7 @@ static void lay_out(const trochia_segment *segments, const double *pool, uint64_
  * greatest inside, and in `acceleration` a line's own. */
 static void backward(const trochia_segment *segments, const double *pool, const trochia_bounds *bounds,
                      trochia_piece *pieces, uint64_t piece_count) {
-    trochia_span span;
+    trochia_span span = {.arc = NULL};
     double next = 0.0;
     for (uint64_t j = piece_count; j-- > 0;) {
         trochia_piece *piece = &pieces[j];
@@ -56,10 +57,12 @@ typedef struct {
     const double *pool;
     const trochia_bounds *bounds;
     double w, v; /* where the piece begins */
+    trochia_span span;
 } trochia_runner;
 
 /* Restores what the pass back knew of a piece; a line needs no more than that. */
-static void recall(const trochia_runner *r, const trochia_piece *piece, trochia_span *span) {
+static void recall(trochia_runner *r, const trochia_piece *piece) {
+    trochia_span *span = &r->span;
     if (piece->acceleration > 0.0) {
         span->straight = 1;
         span->length = r->segments[piece->segment].length;
@@ -72,16 +75,15 @@ static void recall(const trochia_runner *r, const trochia_piece *piece, trochia_
 
 /* Sets a piece's speeds and returns its time. */
 static double go_through(trochia_runner *r, trochia_piece *piece) {
-    trochia_span span;
     double w0 = r->w, w1 = piece->exit, v0 = r->v, peak = 0.0, acceleration = 0.0;
     double length = r->segments[piece->segment].length / piece->parts, high = w0 > w1 ? w0 : w1;
     if (w1 != w0 || piece->peak > high * (1.0 + TROCHIA_WORTH)) {
-        recall(r, piece, &span);
+        recall(r, piece);
         if (w1 > w0) {
-            double most = (w0 + 2.0 * length * trochia_span_reach(&span, 0, w0)) * (1.0 - 4e-16);
+            double most = (w0 + 2.0 * length * trochia_span_reach(&r->span, 0, w0)) * (1.0 - 4e-16);
             w1 = most > w1 ? w1 : most > w0 ? most : w0;
         }
-        peak = trochia_span_peak(&span, w0, w1, &acceleration);
+        peak = trochia_span_peak(&r->span, w0, w1, &acceleration);
     }
     double v1 = w1 == w0 ? v0 : sqrt(w1);
     piece->exit = r->v = v1;

@@ -34,6 +34,9 @@ typedef struct {
     double t[2][18], k[2][18];   /* q' and q'' at both ends */
     double sag_w[18], sag_a[18]; /* how far |k w + t a| may rise between the ends, a unit of w and of |a| */
     double along[2][3], bend[2][3], cap_w, cap_a; /* the same of the vector X Y Z */
+    const trochia_segment *arc; /* the arc last loaded, which part of it, and cosine and sine at that part's ends */
+    uint32_t part;
+    double circle[2][2];
 } trochia_span;
 
 void trochia_span_load(const trochia_segment *segment, const double *pool, const trochia_bounds *bounds, uint32_t part,
