@@ -14,7 +14,7 @@ from trochia.languages.gcode.numbers import as_integer
 from trochia.languages.gcode.registry import G_CODES, G_TENTH, M_CODES, MOST_M_CODES, WORDS
 
 if TYPE_CHECKING:
-    from trochia.languages.gcode.codes import Code
+    from trochia.languages.gcode.codes import Code, WordCode
     from trochia.languages.gcode.place import Place
     from trochia.languages.gcode.reader import Line, Word
 
@@ -37,6 +37,8 @@ class Block:
         Axis words: column of the axis -> value.
     codes
         Codes in the order of the line; ``groups`` has them by modal group.
+    acting
+        Words that act by themselves.
     motion
         The motion code that acts on this line, or None; set by the check against the modal state.
     in_machine
@@ -52,6 +54,7 @@ class Block:
     codes: list[Code] = field(default_factory=list["Code"])
     groups: dict[str, Code] = field(default_factory=dict[str, "Code"])
     where: dict[str, int] = field(default_factory=dict[str, int])
+    acting: list[WordCode] = field(default_factory=list["WordCode"])
     motion: Code | None = None
     in_machine: bool = False
 
@@ -108,6 +111,8 @@ def _add_value(block: Block, word: Word, allowed: str) -> None:
     column = AXIS.get(letter)
     if column is not None:
         block.axes[column] = value
+    elif letter in WORDS:
+        block.acting.append(WORDS[letter])
 
 
 def _add_code(block: Block, code: Code, word: Word) -> None:

@@ -14,7 +14,7 @@ from trochia.languages.gcode.check import check
 from trochia.languages.gcode.fast import FastPath
 from trochia.languages.gcode.place import Place
 from trochia.languages.gcode.reader import LONGEST_LINE, read_line
-from trochia.languages.gcode.registry import RANK, WORDS
+from trochia.languages.gcode.registry import RANK
 from trochia.languages.gcode.state import NO_MOTION, begin
 from trochia.program.work import WorkState
 
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
 AXES = "XYZABC"  #: axis words of the reference's stand-alone interpreter
 HOME = (0.0,) * 9  #: where a program starts if nobody says otherwise
+_MOST_PATIENCE = 16  # lines
 _HOW_TO_END = "The program must end with M2 or M30, or with a line % if it begins with one."
 
 
@@ -169,10 +170,14 @@ class _Walk:
     def lines(self, fast: FastPath | None, *, in_percent: bool) -> Iterator[int]:
         """Run every line; yield the number of the last one done."""
         text, state = self._text, self._state
-        offset, line, opened = 0, 1, False
+        offset, line, opened = 0, 1, not in_percent
+        patience, retry = 0, 1  # after k tries in vain the fast path is next tried k lines later
         while offset < len(text):
-            if fast is not None and (opened or not in_percent):
+            if fast is not None and opened and line >= retry:
+                before = offset
                 offset, line = fast.advance(state, self._sink, offset, line)
+                patience = 0 if offset > before else min(patience + 1, _MOST_PATIENCE)
+                retry = line + patience
                 yield line - 1
                 if offset >= len(text):
                     break
@@ -182,7 +187,7 @@ class _Walk:
                     self._sink.finish()
                     return
                 opened = True
-            elif opened or not in_percent:
+            elif opened:
                 self._run(Place(self._name, line, raw))
                 if state.ended:
                     self._look_for_percent(offset, in_percent=in_percent)
@@ -228,7 +233,7 @@ def execute(block: Block, state: State, sink: Sink) -> None:
     if block.comment is not None:
         _comment(block.comment, sink)
     parts: list[tuple[int, Handler]] = [(RANK[code.step], code.run) for code in block.codes]
-    parts += [(RANK[word.step], word.run) for letter, word in WORDS.items() if letter in block.values]
+    parts += [(RANK[word.step], word.run) for word in block.acting]
     if block.motion is not None and "motion" not in block.groups:
         parts.append((RANK["motion"], block.motion.run))
     if len(parts) > 1:

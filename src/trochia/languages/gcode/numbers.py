@@ -13,7 +13,7 @@ from trochia.errors import ParseError, UnknownCodeError
 if TYPE_CHECKING:
     from trochia.languages.gcode.place import Place
 
-_NUMBER = re.compile(r"([+-]*)([0-9.]*)")
+_NUMBER = re.compile(r"[+-]*[0-9.]*")
 
 
 def read_number(text: str, at: int, place: Place) -> tuple[float, int]:
@@ -29,13 +29,17 @@ def read_number(text: str, at: int, place: Place) -> tuple[float, int]:
         Where a parameter or an expression stands.
     """
     match = _NUMBER.match(text, at)
-    assert match is not None  # both parts may be empty
-    signs, digits = match.groups()
+    assert match is not None  # the pattern matches nothing at all, too
+    found = match.group()
     try:
-        value = float(digits)
+        return float(found), match.end()
     except ValueError:
-        raise _no_number(text, at, digits, place) from None
-    return (-value if signs.count("-") % 2 else value), match.end()
+        digits = found.lstrip("+-")
+        try:
+            value = float(digits)
+        except ValueError:
+            raise _no_number(text, at, digits, place) from None
+    return (-value if found.count("-") % 2 else value), match.end()
 
 
 def _no_number(text: str, at: int, digits: str, place: Place) -> ParseError | UnknownCodeError:
