@@ -17,24 +17,33 @@ from trochia.program import MOVE, MoveKind, PathMode, Plane, Program, TimeLaw
 PLANES = {Plane.XY: (0, 1), Plane.YZ: (1, 2), Plane.ZX: (2, 0)}
 
 
+TURNS = st.sampled_from([0.0, 1e-7, 1e-5, 0.01, math.pi / 2, math.pi, -math.pi / 2]) | st.floats(-3, 3)
+KINDS = st.sampled_from([MoveKind.FEED, MoveKind.FEED, MoveKind.ARC, MoveKind.ARC, MoveKind.RAPID])
+
+
 @st.composite
 def steps(draw, modes):
-    """One move, relative to where the last one ended and the direction it ended in."""
+    """One move, relative to where the last one ended and the direction it ended in.
+
+    What shrinks well is drawn one by one, the rest at once from a seed: drawing takes longer than planning.
+    """
+    chance = np.random.default_rng(draw(st.integers(0, 2**16)))
+    sweeps = [math.pi / 2, math.pi, 2 * math.pi, chance.uniform(0.01, 9), chance.uniform(0.01, 3)]
     return SimpleNamespace(
-        kind=draw(st.sampled_from([MoveKind.FEED, MoveKind.FEED, MoveKind.ARC, MoveKind.ARC, MoveKind.RAPID])),
-        size=10 ** draw(st.floats(-2, 2)),
-        turn=draw(st.sampled_from([0.0, 1e-7, 1e-5, 0.01, math.pi / 2, math.pi, -math.pi / 2]) | st.floats(-3, 3)),
-        climb=draw(st.sampled_from([0.0, 0.0, 1.0]) | st.floats(-1, 1)),
-        rotary=draw(st.sampled_from([0.0, 0.0, 0.0, 30.0])),
-        still=draw(st.integers(0, 9)) == 0,
-        sweep=draw(st.sampled_from([math.pi / 2, math.pi, 2 * math.pi]) | st.floats(0.01, 9)),
-        side=draw(st.sampled_from([-1, 1])),
-        tangent=draw(st.booleans()),
-        plane=draw(st.sampled_from([Plane.XY, Plane.XY, Plane.YZ, Plane.ZX])),
-        spiral=draw(st.sampled_from([0.0, 0.0, 1e-9, 1e-4, 1e-2])),
-        feed=10 ** draw(st.floats(-1, 2.5)),
-        law=draw(st.sampled_from([TimeLaw.PER_SECOND] * 9 + [TimeLaw.INVERSE])),
+        kind=draw(KINDS),
+        turn=draw(TURNS),
         mode=draw(modes),
+        size=10 ** chance.uniform(-2, 2),
+        climb=chance.choice([0.0, 0.0, 1.0, chance.uniform(-1, 1)]),
+        rotary=chance.choice([0.0, 0.0, 0.0, 30.0]),
+        still=chance.uniform() < 0.1,
+        sweep=chance.choice(sweeps),
+        side=int(chance.choice([-1, 1])),
+        tangent=chance.uniform() < 0.5,
+        plane=Plane(chance.choice([0, 0, 1, 2])),
+        spiral=chance.choice([0.0, 0.0, 1e-9, 1e-4, 1e-2]),
+        feed=10 ** chance.uniform(-1, 2.5),
+        law=TimeLaw.INVERSE if chance.uniform() < 0.1 else TimeLaw.PER_SECOND,
     )
 
 
@@ -92,9 +101,10 @@ def _machines():
     }
 
 
-def programs(machine, modes=None, most=25):
+def programs(machine, modes=None, most=12):
     """Programs for a machine; ``modes`` draws (path mode, tolerance)."""
-    any_mode = st.tuples(st.sampled_from(PathMode), st.floats(-4, 0).map(lambda e: 10**e))
+    tolerances = st.sampled_from([1e-4, 1e-3, 0.01, 0.05, 0.3, 1.0])
+    any_mode = st.tuples(st.sampled_from(PathMode), tolerances)
     drawn = st.lists(steps(any_mode if modes is None else modes), min_size=1, max_size=most)
     return drawn.map(lambda parts: program_of(parts, machine.columns))
 
