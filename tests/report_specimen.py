@@ -12,23 +12,22 @@ from trochia.analysis.problems import Problem, Severity
 from trochia.analysis.report import AxisSummary, LineTimes, MotionSamples, ProgrammedPath, ReportData, TimeParts
 from trochia.analysis.report.deviation import deviation
 
-PERIOD = 0.001
 LAG = 1 / 60  # s: following error over velocity
 HOSTILE = "(</script><script>alert(1)</script> & \"quotes\" 'n' <b>bold</b> ]]> <!-- É)"
 
 
-def contour(*, depth: bool = False, over: bool = False) -> ReportData:
+def contour(*, depth: bool = False, over: bool = False, period: float = 0.001) -> ReportData:
     """Return the report of the contour specimen; with ``depth`` it cuts in three levels of Z."""
     points, rapid, texts = _program(depth=depth)
     acceleration, speeds = 800.0, np.where(rapid, 40.0, 33.0)
-    time, position, speed, line = _drive(points, speeds, acceleration)
+    time, position, speed, line = _drive(points, speeds, acceleration, period)
     velocity = np.gradient(position, time, axis=0)
     accelerations = np.gradient(velocity, time, axis=0)
-    actual = _lag(position)
+    actual = _lag(position, period)
     contour_error = np.linalg.norm(deviation(position, actual, np.arange(len(time))), axis=1)
     names = "XYZ" if depth else "XY"
     line_of_point = np.arange(1, len(points) + 1) + 3
-    seconds = np.bincount(line, minlength=len(points) + 4) * PERIOD
+    seconds = np.bincount(line, minlength=len(points) + 4) * period
     busy = np.flatnonzero(seconds)
     steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
     problems = (
@@ -122,7 +121,7 @@ def _figure(radius: float, sides: int):
     return 50 + wide[:, None] * np.column_stack((np.cos(angle), np.sin(angle)))
 
 
-def _drive(points, speeds, acceleration):
+def _drive(points, speeds, acceleration, period):
     """Return time, position, path speed and line of a trapezoid along chords, slowed at corners by their angle."""
     steps = np.diff(points, axis=0)
     length = np.linalg.norm(steps, axis=1)
@@ -142,7 +141,7 @@ def _drive(points, speeds, acceleration):
     ramps = (peak**2 - corner[:-1] ** 2 + peak**2 - corner[1:] ** 2) / (2 * acceleration)
     flat = np.maximum(0, length - ramps) / peak
     ends = np.cumsum(up + flat + down)
-    time = np.arange(0, ends[-1], PERIOD)
+    time = np.arange(0, ends[-1], period)
     i = np.minimum(np.searchsorted(ends, time, side="right"), len(ends) - 1)
     into = time - np.concatenate(((0.0,), ends))[i]
     late = np.maximum(0, into - up[i] - flat[i])
@@ -154,11 +153,11 @@ def _drive(points, speeds, acceleration):
     return time, position, np.maximum(0, speed), line[i]
 
 
-def _lag(position):
+def _lag(position, period):
     """Return a first-order loop's answer to ``position`` (m, k)."""
     actual = np.empty_like(position)
     actual[0] = position[0]
-    share = 1 - np.exp(-PERIOD / LAG)
+    share = 1 - np.exp(-period / LAG)
     for i in range(1, len(position)):
         actual[i] = actual[i - 1] + share * (position[i] - actual[i - 1])
     return actual

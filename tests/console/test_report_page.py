@@ -7,6 +7,7 @@ import io
 import itertools
 import runpy
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -30,7 +31,17 @@ COLOURS = """canvas => {
 @pytest.fixture(scope="module")
 def reports(tmp_path_factory):
     folder = tmp_path_factory.mktemp("reports")
-    for name, data in (("flat", SPECIMEN["contour"]()), ("deep", SPECIMEN["contour"](depth=True, over=True))):
+    flat, hostile = SPECIMEN["contour"](period=0.005), SPECIMEN["HOSTILE"]
+    kinds = {
+        "flat": flat,
+        "deep": SPECIMEN["contour"](depth=True, over=True, period=0.005),
+        "planned": replace(flat, samples=None),
+        "still": replace(flat, samples=None, programmed=None, line_times=None),
+        "hostile": replace(
+            flat, program=hostile, machine=hostile, problems=(replace(flat.problems[0], message=hostile),)
+        ),
+    }
+    for name, data in kinds.items():
         write_report(folder / f"{name}.html", data)
     return folder
 
@@ -55,8 +66,8 @@ def opened(browser, reports):
         page.on("dialog", lambda dialog: complaints.append(dialog.message))
         page.on("request", lambda request: asked.append(request.url))
         page.goto((reports / f"{name}.html").as_uri())
-        page.locator("#path-base").scroll_into_view_if_needed()
-        wait_until(page, "document.querySelector('#path-base').width > 300")
+        if page.locator("#path-base").is_visible():
+            page.locator("#path-base").scroll_into_view_if_needed()
         settle(page)
         pages.append(page)
         return page
@@ -114,6 +125,27 @@ def test_everything_is_drawn(opened, scheme):
         assert plots.nth(i).evaluate(COLOURS) > 10
     assert page.locator("h1").inner_text() == "contour.ngc"
     assert "It will run, with 2 warnings" in page.locator(".verdict").inner_text()
+
+
+def test_a_program_that_was_only_planned_is_drawn_too(opened):
+    page = opened("planned")
+    assert page.locator("#path-base").evaluate(COLOURS) > 10
+    assert page.locator(".plots").is_hidden()
+    assert page.locator("#player").is_hidden()
+
+
+def test_no_motion_is_said_in_words(opened):
+    page = opened("still")
+    assert page.locator("#path-empty").is_visible()
+    assert page.locator("#stage").is_hidden()
+
+
+def test_hostile_text_is_shown_and_not_run(opened):
+    page = opened("hostile")
+    hostile = SPECIMEN["HOSTILE"]
+    assert page.locator("h1").inner_text() == hostile
+    assert page.title() == f"{hostile} on {hostile} – Trochia"  # noqa: RUF001 - the title's dash
+    assert hostile in page.locator(".problems").inner_text()
 
 
 def test_pointing_at_the_path_tells_line_time_place_and_speed(opened):

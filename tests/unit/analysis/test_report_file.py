@@ -77,7 +77,20 @@ def test_a_million_moves_still_fit(contour):
     assert speed.max() == np.float32(samples.speed.max())
 
 
-@pytest.mark.parametrize("bare", [{"samples": None}, {"samples": None, "programmed": None, "line_times": None}])
+NOTHING = np.zeros((0, 2))
+AT_NO_TIME = MotionSamples(time=NOTHING[:, 0], position=NOTHING, velocity=NOTHING, acceleration=NOTHING,
+                           speed=NOTHING[:, 0], line=np.zeros(0, np.int64), actual=NOTHING)  # fmt: skip
+NOWHERE = ProgrammedPath(points=NOTHING, rapid=np.zeros(0, np.bool_), line=np.zeros(0, np.int64))
+
+
+@pytest.mark.parametrize(
+    "bare",
+    [
+        {"samples": None},
+        {"samples": None, "programmed": None, "line_times": None},
+        {"samples": AT_NO_TIME, "programmed": NOWHERE, "line_times": None},
+    ],
+)
 def test_a_job_that_never_ran_has_a_report_too(contour, bare, tmp_path):
     data = replace(contour, ok=False, problems=(), **bare)
     assert "It will not run" in render_report(data)

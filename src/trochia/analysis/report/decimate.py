@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     Indices = NDArray[np.int64]
 
 #: Above this many points a path is thinned evenly first, so that memory stays bounded too.
-_DENSE = 2_000_000
+_DENSE = 600_000
 
 
 def bucket_times(time: Floats, limit: int) -> Floats:

@@ -6,6 +6,7 @@ In: :class:`ReportData` of any length.  Out: a dictionary for :func:`json.dumps`
 from __future__ import annotations
 
 import base64
+import itertools
 import math
 from typing import TYPE_CHECKING, Any
 
@@ -37,8 +38,10 @@ _TEXT_WIDTH = 100
 
 def payload(data: ReportData, keep_lines: Iterable[int] = ()) -> Payload:
     """Return everything the page draws; ``keep_lines`` are source lines whose text must be there."""
-    programmed = None if data.programmed is None else _programmed(data.programmed)
-    samples = data.samples
+    programmed, samples = data.programmed, data.samples
+    corners = None if programmed is None else _choose_corners(programmed)
+    instants = None if samples is None else _choose_instants(samples)
+    shown = [part.line[kept] for part, kept in ((programmed, corners), (samples, instants)) if part is not None]
     return {
         "format": FORMAT,
         "axes": [
@@ -46,10 +49,10 @@ def payload(data: ReportData, keep_lines: Iterable[int] = ()) -> Payload:
              "acceleration": axis.acceleration} for axis in data.axes
         ],
         "caps": {"velocity": data.path_velocity, "acceleration": data.path_acceleration},
-        "programmed": programmed,
-        "path": None if samples is None else _path(samples, data.rapid_samples()),
+        "programmed": None if programmed is None or corners is None else _programmed(programmed, corners),
+        "path": None if samples is None or instants is None else _path(samples, data.rapid_samples(), instants),
         "channels": None if samples is None else _channels(samples),
-        "lines": _texts(data, keep_lines),
+        "lines": _texts(data, shown, keep_lines),
     }  # fmt: skip
 
 
@@ -63,32 +66,38 @@ def _columns(table: NDArray[np.float64]) -> list[Payload]:
     return [pack(column, "f4") for column in table.T]
 
 
-def _programmed(path: ProgrammedPath) -> Payload:
+def _choose_corners(path: ProgrammedPath) -> NDArray[np.int64]:
+    """Return the points of the programmed path that are drawn."""
     points = path.points
-    if not len(points):
-        return {"position": _columns(points), "line": pack(path.line, "i4"), "rapid": pack(path.rapid, "u1")}
     steps = np.linalg.norm(np.diff(points, axis=0, prepend=points[:1]), axis=1)
     # a change between feed and rapid counts as a step of a thousandth of the part, so that it outlives flat points
     features: NDArray[Any] = np.column_stack((points / _size(points), 1e-3 * path.rapid))
-    kept = simplify(np.cumsum(steps), features, PROGRAMMED_POINTS)
+    return simplify(np.cumsum(steps), features, PROGRAMMED_POINTS)
+
+
+def _programmed(path: ProgrammedPath, kept: NDArray[np.int64]) -> Payload:
     return {
-        "position": _columns(points[kept]), "line": pack(path.line[kept], "i4"), "rapid": pack(path.rapid[kept], "u1")
-    }  # fmt: skip
+        "position": _columns(path.points[kept]),
+        "line": pack(path.line[kept], "i4"),
+        "rapid": pack(path.rapid[kept], "u1"),
+    }
 
 
-def _path(samples: MotionSamples, rapid: NDArray[np.bool_]) -> Payload:
-    """Return the samples that draw the path, each at its time: position, errors, speed, line, rapid or not."""
-    error = samples.following_error
-    width = samples.position.shape[1] * (1 if error is None else 3) + 5
-    position = samples.position / _size(samples.position)
-    # colour may be wrong by a twentieth of what place may be: both show, but place matters more
-    features: list[NDArray[Any]] = [
-        position,
-        0.05 * samples.speed[:, None] / (np.max(samples.speed, initial=0.0) or 1.0),
-    ]
+def _choose_instants(samples: MotionSamples) -> NDArray[np.int64]:
+    """Return the samples that draw the path: commanded and actual in the right place, in the right colour."""
+    error, size = samples.following_error, _size(samples.position)
+    top = np.max(samples.speed, initial=0.0) or 1.0
+    # colour may be wrong by twenty times what place may be: both show, but place matters more
+    features: list[NDArray[Any]] = [samples.position / size, 0.05 * samples.speed[:, None] / top]
     if error is not None:
-        features.append(error / _size(samples.position))
-    kept = simplify(samples.time, np.concatenate(features, axis=1), min(PATH_POINTS, _NUMBERS // width))
+        features.append(error / size)
+    width = samples.position.shape[1] * (1 if error is None else 3) + 5
+    return simplify(samples.time, np.concatenate(features, axis=1), min(PATH_POINTS, _NUMBERS // width))
+
+
+def _path(samples: MotionSamples, rapid: NDArray[np.bool_], kept: NDArray[np.int64]) -> Payload:
+    """Return the path at the instants ``kept``: position, errors, speed, line, rapid or not."""
+    error = samples.following_error
     return {
         "time": pack(samples.time[kept], "f8"),
         "position": _columns(samples.position[kept]),
@@ -125,17 +134,12 @@ def _size(points: NDArray[np.float64]) -> float:
     return float(np.linalg.norm(np.ptp(points, axis=0))) or 1.0 if len(points) else 1.0
 
 
-def _texts(data: ReportData, keep: Iterable[int]) -> dict[int, str]:
-    """Return source texts by line number: those to keep, then as many as the budget allows, evenly spread."""
+def _texts(data: ReportData, shown: list[NDArray[np.int64]], keep: Iterable[int]) -> dict[int, str]:
+    """Return source texts by line: those to keep, then of those shown as many as the budget allows, evenly spread."""
     used = np.zeros(len(data.source) + 1, np.bool_)
-    for part in (data.programmed, data.samples):
-        if part is not None:
-            used[part.line[(part.line >= 1) & (part.line <= len(data.source))]] = True
-    lines = np.flatnonzero(used)
-    if not len(lines):
-        return {line: data.text(line)[:_TEXT_WIDTH] for line in sorted(set(keep))}
-    probe = lines[:: max(1, len(lines) // 500)].tolist()
-    average = 12 + sum(min(_TEXT_WIDTH, len(data.text(line))) for line in probe) / len(probe)
-    stride = max(1, math.ceil(len(lines) * average / _TEXT_BUDGET))
-    chosen = sorted({*keep, *lines[::stride].tolist()})
-    return {line: data.text(line)[:_TEXT_WIDTH] for line in chosen}
+    for lines in shown:
+        used[lines[(lines >= 1) & (lines <= len(data.source))]] = True
+    texts = {line: data.text(line)[:_TEXT_WIDTH] for line in np.flatnonzero(used).tolist()}
+    stride = max(1, math.ceil(sum(12 + len(text) for text in texts.values()) / _TEXT_BUDGET))
+    chosen = dict(itertools.islice(texts.items(), 0, None, stride))
+    return chosen | {line: data.text(line)[:_TEXT_WIDTH] for line in keep}

@@ -37,7 +37,7 @@ class Chart {
     [this.unit, this.off, this.values] = [find(".unit"), find(".off"), find(".values")];
     find("h3").textContent = spec.title;
     this.canvas.setAttribute("aria-label", `${spec.title} over time. Arrow keys move the cursor, plus and minus zoom.`);
-    this.draw = oncePerFrame(() => this.#draw());
+    this.draw = oncePerFrame(() => this.render());
     new ResizeObserver(() => this.draw()).observe(this.canvas);
   }
 
@@ -93,7 +93,8 @@ class Chart {
     return [this.spec.oneSided ? 0 : low - room, high + room];
   }
 
-  #draw() {
+  /** Draw everything now; `draw` does so with the next frame. */
+  render() {
     const { context, width, height } = prepareCanvas(this.canvas);
     const theme = Chart.theme;
     const [low, high] = this.#range();
@@ -205,7 +206,7 @@ class Chart {
       i = end + 1;
     }
     context.stroke();
-    if (!this.spec.mapped) return;
+    if (!this.spec.mapped || onPaper()) return; // what is pale on a screen prints solid
     context.lineTo(this.x(time[last]), floor);
     context.lineTo(this.x(time[first]), floor);
     context.globalAlpha = 0.16;

@@ -126,6 +126,7 @@ function wireReadout(motion, store, view) {
   };
   canvas.addEventListener("pointerleave", leave);
   canvas.addEventListener("pointerdown", leave);
+  canvas.addEventListener("wheel", leave);
 
   const show = oncePerFrame(() => {
     if (store.state.time === null) return;
@@ -156,8 +157,8 @@ function wireTheme(motion, store, view, charts) {
     view.theme = new Theme();
     Chart.theme = view.theme;
     writeLegend(motion, view.theme, store.state.feed);
-    view.draw();
-    for (const chart of charts) chart.draw();
+    view.render();  // at once: printing does not wait for a frame
+    for (const chart of charts) chart.render();
   };
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", refresh);
   const paper = (on) => {

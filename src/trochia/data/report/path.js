@@ -23,7 +23,7 @@ class PathView {
     this.interval = this.#usualInterval();
     this.dots = this.#dots();
     this.theme = new Theme();
-    this.draw = oncePerFrame(() => this.#draw());
+    this.draw = oncePerFrame(() => this.render());
     this.drawMarks = oncePerFrame(() => this.#drawMarks());
     this.fitted = true;
     store.subscribe((_, changed) => {
@@ -103,7 +103,8 @@ class PathView {
     else this.draw();
   }
 
-  #draw() {
+  /** Draw everything now; `draw` does so with the next frame. */
+  render() {
     if (this.empty) return;
     const { context } = prepareCanvas(this.canvases.base);
     const { camera, motion, theme, shown } = this;
@@ -122,7 +123,8 @@ class PathView {
     drawEnds(context, camera, at(0), at(ends.position[0].length - 1), theme);
     drawScaleBar(context, camera, theme);
     if (camera.orbiting) drawTriad(context, camera, motion.axes, theme);
-    this.#drawMarks();
+    if (onPaper()) this.#drawMarksOn(context);
+    else this.#drawMarks();
   }
 
   #drawProgrammed(context) {
@@ -197,9 +199,12 @@ class PathView {
   }
 
   #drawMarks() {
-    const { context } = prepareCanvas(this.canvases.over);
-    const { time, line } = this.store.state;
     if (this.empty) return;
+    this.#drawMarksOn(prepareCanvas(this.canvases.over).context);
+  }
+
+  #drawMarksOn(context) {
+    const { time, line } = this.store.state;
     context.lineJoin = context.lineCap = "round";
     if (line !== null) this.#drawLine(context, line);
     if (time === null || !this.screen) return;

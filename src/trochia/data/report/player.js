@@ -44,8 +44,7 @@ function attachPlayer(motion, store) {
     if (changed.has("time") && time !== null) slider.value = String(time);
   });
   document.addEventListener("keydown", (event) => {
-    const busy = event.target instanceof HTMLElement && event.target.closest("button, select, input, a");
-    if (event.key !== " " || busy) return;
+    if (event.key !== " " || !(event.target instanceof HTMLCanvasElement)) return;
     event.preventDefault();
     play(before === null);
   });

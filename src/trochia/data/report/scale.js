@@ -29,6 +29,11 @@ function ticks(low, high, wanted) {
   return { values, digits };
 }
 
+/** The page is being printed. */
+function onPaper() {
+  return document.documentElement.hasAttribute("data-paper");
+}
+
 /**
  * Give a canvas as many pixels as the screen shows of it, and return its context in CSS pixels, cleared.
  * @param {HTMLCanvasElement} canvas
@@ -39,12 +44,12 @@ function prepareCanvas(canvas) {
   const width = canvas.clientWidth;
   const height = canvas.clientHeight;
   const [across, down] = [Math.round(width * ratio), Math.round(height * ratio)];
-  if (canvas.width !== across || canvas.height !== down) {
-    canvas.width = across;
+  if (onPaper() || canvas.width !== across || canvas.height !== down) {
+    canvas.width = across; // a fresh canvas: browsers print what is drawn on it as vectors, and paper knows no clearing
     canvas.height = down;
   }
   const context = canvas.getContext("2d");
   context.setTransform(ratio, 0, 0, ratio, 0, 0);
-  context.clearRect(0, 0, width, height);
+  if (!onPaper()) context.clearRect(0, 0, width, height);
   return { context, width, height };
 }
