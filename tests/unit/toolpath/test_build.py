@@ -204,3 +204,15 @@ def test_program_and_path_stay_inside_their_memory():
     program = read(text)
     path = build(program, MILL)
     assert program.moves.nbytes + path.segments.nbytes + path.pool.nbytes <= 400 * len(program.moves)
+
+
+def test_a_turning_axis_keeps_the_tolerance_in_degrees():
+    path = path_of("G64 P0.02\nG1 X10 F600\nX20 A30\nA60", ROTARY)
+    exact = path_of("G64 P0.02\nG1 X10 F600\nX20 A30\nA60", ROTARY, blend=False)
+    corners = exact.points(np.array([1, 2]), np.zeros(2))
+    blends = np.flatnonzero(path.segments["kind"] == SegmentKind.CUBIC)
+    middles = path.points(blends, path.segments["length"][blends] / 2)
+    apart = middles - corners
+    assert np.linalg.norm(apart[:, :3], axis=1).max() <= 0.02 * (1 + 1e-9)
+    # whichever of the two is nearer to its bound touches it
+    assert np.maximum(np.linalg.norm(apart[:, :3], axis=1), np.abs(apart[:, 3])) == pytest.approx([0.02, 0.02])
