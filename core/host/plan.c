@@ -158,7 +158,7 @@ void trochia_plan_peaks(const trochia_segment *segments, const double *pool, con
         const trochia_segment *segment = &segments[pieces[cursor.piece].segment];
         uint64_t made = trochia_plan_phases(segments, pieces, cursor.piece + 1, (const uint64_t *)0, (const double *)0,
                                             0, &cursor, phases, 4);
-        int points = segment->kind == TROCHIA_LINE ? 1 : 8;
+        int points = segment->kind == TROCHIA_LINE ? 1 : pieces[cursor.piece - 1].parts == 1 ? 3 : 8;
         for (uint64_t k = 0; k < made; k++)
             for (int at = 0; at <= points; at++) {
                 double t = phases[k].duration * at / points;

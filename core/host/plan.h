@@ -57,7 +57,8 @@ void trochia_plan_states(const trochia_segment *segments, const trochia_piece *p
 void trochia_plan_move_times(const trochia_segment *segments, const trochia_piece *pieces, uint64_t piece_count,
                              double *out);
 
-/* Greatest |velocity| and |acceleration| of each row of C at the ends of all phases and at seven points between. */
+/* Greatest |velocity| and |acceleration| of each row of C at the ends of all phases, at two points between
+ * on curves of one piece and at seven on others. */
 void trochia_plan_peaks(const trochia_segment *segments, const double *pool, const trochia_limits *limits,
                         const trochia_piece *pieces, uint64_t piece_count, double *velocity, double *acceleration);
 
