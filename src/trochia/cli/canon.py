@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 import os
 import sys
-import tempfile
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
@@ -70,19 +69,16 @@ def _print_json(text: bytes, name: str, *, block_delete: bool) -> None:
 
 @contextmanager
 def _whole_file(path: Path) -> Generator[BinaryIO]:
-    """Give a file that takes its name only when all of it is written."""
-    with tempfile.NamedTemporaryFile(dir=path.parent, prefix=path.name, delete=False) as out:
-        try:
-            yield out  # type: ignore[misc]
-        except BaseException:
-            Path(out.name).unlink()
-            raise
-    Path(out.name).chmod(0o666 & ~_umask())
-    Path(out.name).replace(path)
-
-
-def _umask() -> int:
-    """Return the mask new files are made with, which Python can only tell by setting it."""
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
+    """Give a file that takes its name only when all of it is written; a device or a pipe is written as it is."""
+    path = path.resolve()
+    if path.exists() and not path.is_file():
+        with path.open("wb") as out:
+            yield out
+        return
+    part = path.with_name(path.name + ".part")
+    try:
+        with part.open("wb") as out:
+            yield out
+        part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)

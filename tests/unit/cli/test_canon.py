@@ -43,6 +43,11 @@ def test_a_wrong_program_leaves_the_file_as_it_was(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["part.canon"]
 
 
+def test_a_device_stays_a_device():
+    assert trochia("-", "-o", "/dev/null", text=PROGRAM).returncode == 0
+    assert Path("/dev/null").is_char_device()
+
+
 def test_a_wrong_program_is_named_with_line_and_column():
     done = trochia("-", text=b"G0 X1\nG1 X2\nM2\n")
     assert done.returncode == 1
