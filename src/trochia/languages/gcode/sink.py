@@ -22,40 +22,101 @@ class Sink(Protocol):
 
     line: int
 
-    def straight_traverse(self, target: Position) -> None: ...  # noqa: D102
-    def straight_feed(self, target: Position) -> None: ...  # noqa: D102
-    def arc_feed(self, target: Position, centre: tuple[float, float], turns: int, plane: Plane) -> None: ...  # noqa: D102
-    def moves(self, rows: Rows) -> None: ...  # noqa: D102
+    def straight_traverse(self, target: Position) -> None:
+        """Go straight to the target, as fast as the axes can."""
 
-    def dwell(self, seconds: float) -> None: ...  # noqa: D102
-    def set_feed_mode(self, law: TimeLaw) -> None: ...  # noqa: D102
-    def set_feed_rate(self, rate: float) -> None: ...  # noqa: D102
-    def set_inverse_time(self, per_minute: float, rate: float) -> None: ...  # noqa: D102
+    def straight_feed(self, target: Position) -> None:
+        """Go straight to the target at the feed."""
 
-    def use_length_units(self, *, inch: bool) -> None: ...  # noqa: D102
-    def select_plane(self, plane: Plane) -> None: ...  # noqa: D102
-    def set_g5x_offset(self, system: int, offset: Position) -> None: ...  # noqa: D102
-    def set_g92_offset(self, offset: Position) -> None: ...  # noqa: D102
-    def set_xy_rotation(self, degrees: float) -> None: ...  # noqa: D102
-    def use_tool_length_offset(self, offset: Position) -> None: ...  # noqa: D102
-    def set_motion_control_mode(self, mode: PathMode, tolerance: float) -> None: ...  # noqa: D102
-    def set_naivecam_tolerance(self, tolerance: float) -> None: ...  # noqa: D102
-    def set_feed_reference(self) -> None: ...  # noqa: D102
+    def arc_feed(self, target: Position, centre: tuple[float, float], turns: int, plane: Plane) -> None:
+        """Go along an arc or helix about the centre, which is on the plane's axes; turns + = counter-clockwise."""
 
-    def set_spindle_mode(self) -> None: ...  # noqa: D102
-    def set_spindle_speed(self, speed: float) -> None: ...  # noqa: D102
-    def start_spindle(self, direction: int) -> None: ...  # noqa: D102
-    def stop_spindle(self) -> None: ...  # noqa: D102
-    def mist(self, *, on: bool) -> None: ...  # noqa: D102
-    def flood(self, *, on: bool) -> None: ...  # noqa: D102
-    def select_tool(self, tool: int) -> None: ...  # noqa: D102
-    def start_change(self) -> None: ...  # noqa: D102
-    def change_tool(self, tool: int) -> None: ...  # noqa: D102
+    def moves(self, rows: Rows) -> None:
+        """Take a batch of plain moves, feeds and comments, as the fast path has them."""
 
-    def comment(self, text: str) -> None: ...  # noqa: D102
-    def message(self, text: str) -> None: ...  # noqa: D102
-    def program_stop(self, *, optional: bool) -> None: ...  # noqa: D102
-    def pallet_shuttle(self) -> None: ...  # noqa: D102
-    def program_end(self) -> None: ...  # noqa: D102
-    def finish(self) -> None: ...  # noqa: D102
-    def on_reset(self) -> None: ...  # noqa: D102
+    def dwell(self, seconds: float) -> None:
+        """Wait [s]."""
+
+    def set_feed_mode(self, law: TimeLaw) -> None:
+        """Say what the feed rate is measured in."""
+
+    def set_feed_rate(self, rate: float) -> None:
+        """Set the feed [units/min, units/rev]."""
+
+    def set_inverse_time(self, per_minute: float, rate: float) -> None:
+        """Let the next move last 1/per_minute minutes; rate is the feed that does it [units/min]."""
+
+    def use_length_units(self, *, inch: bool) -> None:
+        """Use inches or millimetres from here on."""
+
+    def select_plane(self, plane: Plane) -> None:
+        """Choose the plane of arcs."""
+
+    def set_g5x_offset(self, system: int, offset: Position) -> None:
+        """Set the origin of the active coordinate system, 1 for G54, in machine coordinates."""
+
+    def set_g92_offset(self, offset: Position) -> None:
+        """Set the shift of all coordinate systems."""
+
+    def set_xy_rotation(self, degrees: float) -> None:
+        """Set the turn of the active coordinate system about Z."""
+
+    def use_tool_length_offset(self, offset: Position) -> None:
+        """Set the offset of the tool's tip."""
+
+    def set_motion_control_mode(self, mode: PathMode, tolerance: float) -> None:
+        """Say how exactly the path is followed; the tolerance is that of blending."""
+
+    def set_naivecam_tolerance(self, tolerance: float) -> None:
+        """Say by how much points may be left out along the path."""
+
+    def set_feed_reference(self) -> None:
+        """Say that feeds refer to the part."""
+
+    def set_spindle_mode(self) -> None:
+        """Say that S is the spindle speed itself."""
+
+    def set_spindle_speed(self, speed: float) -> None:
+        """Set the spindle speed [rpm], or power of the beam."""
+
+    def start_spindle(self, direction: int) -> None:
+        """Start spindle or beam: +1 clockwise, -1 counter-clockwise."""
+
+    def stop_spindle(self) -> None:
+        """Stop spindle or beam."""
+
+    def mist(self, *, on: bool) -> None:
+        """Switch mist coolant."""
+
+    def flood(self, *, on: bool) -> None:
+        """Switch flood coolant."""
+
+    def select_tool(self, tool: int) -> None:
+        """Make a tool ready."""
+
+    def start_change(self) -> None:
+        """Begin a tool change."""
+
+    def change_tool(self, tool: int) -> None:
+        """Put a tool into the spindle."""
+
+    def comment(self, text: str) -> None:
+        """Pass on a comment of the program, or a remark of the interpreter."""
+
+    def message(self, text: str) -> None:
+        """Tell the operator."""
+
+    def program_stop(self, *, optional: bool) -> None:
+        """Wait for the operator, always or only if he wants."""
+
+    def pallet_shuttle(self) -> None:
+        """Change pallets."""
+
+    def program_end(self) -> None:
+        """End the program."""
+
+    def finish(self) -> None:
+        """End a text at its ``%``."""
+
+    def on_reset(self) -> None:
+        """Note that the interpreter begins, or has ended."""
