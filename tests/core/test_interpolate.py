@@ -61,6 +61,8 @@ def test_timing_run_makes_the_same_pulses() -> None:
 def test_bad_figures_are_refused() -> None:
     with pytest.raises(ValueError, match="within"):
         Begun.line(METHODS["dda"], GREATEST + 1, 0)
+    with pytest.raises(ValueError, match="no further out"):
+        Begun.arc(METHODS["dda"], (0, 10), (11, 0), 108, clockwise=False)
     with pytest.raises(ValueError, match="radius"):
         Begun.arc(METHODS["dda"], (0, 0), (1, 0), 1, clockwise=False)
 

@@ -61,11 +61,14 @@ class Begun:
         Raises
         ------
         ValueError
-            For a point at the centre or coordinates out of range; that both lie on the circle is the caller's care.
+            For a point at the centre or out of range; that both lie on the circle is the caller's care.
         """
         _check(*start, *end)
         if not 0 < radius_squared <= GREATEST**2 or start == (0, 0) or end == (0, 0):
             raise ValueError("an arc has a radius above zero, and its ends are not its centre")
+        furthest = max(map(abs, (*start, *end)))
+        if furthest * (furthest - 1) >= radius_squared:  # so that furthest is at most the rounded radius
+            raise ValueError("an arc's ends lie no further out than where its circle meets the axes")
         begun = cls(method)
         lib.trochia_begin_arc(begun._state, method, clockwise, radius_squared, *start, *end)
         return begun

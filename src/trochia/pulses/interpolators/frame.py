@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 Step = tuple[bool, bool]
 Point = tuple[int, int]
 
+_ROUNDING = 0.75  # steps: a rounded point is at most half a diagonal, 0.71, from its circle
 X, Y, BOTH, NONE = (True, False), (False, True), (True, True), (False, False)
 
 
@@ -58,14 +59,15 @@ class Arc:
     clockwise: bool = False
 
     def __post_init__(self) -> None:
+        greatest = nearest_root(self.radius_squared)
         for name, point in (("start", self.start), ("end", self.end)):
-            if self.radius_squared < 1 or abs(math.hypot(*point) - self.radius) > 0.75:
+            away = math.hypot(*point)
+            if self.radius_squared < 1 or abs(away - self.radius) > _ROUNDING or max(map(abs, point)) > greatest:
                 raise ConfigError(
-                    f"the arc's {name} {point} lies {math.hypot(*point):.2f} steps from its centre, "
-                    f"not {self.radius:.2f}",
+                    f"the arc's {name} {point} lies {away:.2f} steps from its centre, not {self.radius:.2f}",
                     hint="Give the point of the grid that is nearest to the circle.",
                 )
-        if any(piece.x_end > piece.x or piece.y_end < piece.y for piece in pieces(self)):
+        if _backwards(self):
             raise ConfigError(f"no arc of radius {self.radius:.2f} steps goes from {self.start} to {self.end}",
                               hint="Both must be the grid's nearest points to one circle.")  # fmt: skip
 
@@ -102,6 +104,24 @@ def turned(point: Point, quarters: int) -> Point:
     return ((x, y), (-y, x), (-x, -y), (y, -x))[quarters % 4]
 
 
+def _swapped(arc: Arc, point: Point) -> Point:
+    """Return a point as the counter-clockwise frame has it, or back."""
+    return (point[1], point[0]) if arc.clockwise else point
+
+
+def _first_quarter(arc: Arc) -> int:
+    """Return by how many quarters of a turn the start lies beyond the frame's quadrant."""
+    first = _swapped(arc, arc.start)
+    return next(k for k in range(4) if turned(first, -k)[0] > 0 and turned(first, -k)[1] >= 0)
+
+
+def _backwards(arc: Arc) -> bool:
+    """Whether the end is the next to come by its angle, and yet a coordinate would have to go back to it."""
+    quarters = _first_quarter(arc)
+    (x, y), end = (turned(_swapped(arc, point), -quarters) for point in (arc.start, arc.end))
+    return min(end) >= 0 and x * end[1] - y * end[0] > 0 and not _ahead(x, y, end)
+
+
 def _ahead(x: int, y: int, end: Point) -> bool:
     """Whether ``end`` lies ahead of (x, y) in the frame's quadrant."""
     return 0 <= end[0] <= x and end[1] >= y and (x, y) != end
@@ -109,20 +129,15 @@ def _ahead(x: int, y: int, end: Point) -> bool:
 
 def pieces(arc: Arc) -> Iterator[Piece]:
     """Yield an arc quadrant by quadrant."""
-
-    def swapped(point: Point) -> Point:
-        return (point[1], point[0]) if arc.clockwise else point
-
-    radius = nearest_root(arc.radius_squared)
-    first, last = swapped(arc.start), swapped(arc.end)
-    quarters = next(k for k in range(4) if turned(first, -k)[0] > 0 and turned(first, -k)[1] >= 0)
+    radius, quarters = nearest_root(arc.radius_squared), _first_quarter(arc)
+    first, last = _swapped(arc, arc.start), _swapped(arc, arc.end)
     x, y = turned(first, -quarters)
     done = False
     while not done:
         end = turned(last, -quarters)
         done = _ahead(x, y, end)
         x_end, y_end = end if done else (0, radius)
-        x_step, y_step = swapped(turned((-1, 0), quarters)), swapped(turned((0, 1), quarters))
+        x_step, y_step = (_swapped(arc, turned(step, quarters)) for step in ((-1, 0), (0, 1)))
         yield Piece(x=x, y=y, x_end=x_end, y_end=y_end, x_step=x_step, y_step=y_step)
         x, y, quarters = radius, 0, quarters + 1
 
