@@ -64,9 +64,12 @@ static double tighten_cap(const trochia_span *span, int at, double sign, double 
         qq += q * q;
     }
     double rest = fmax(b * b - pp, 0.0), g = qq - d * d, h = pq + b * d;
-    double square = h * h + g * rest, root = square > 0.0 ? h + sqrt(square) : 0.0;
-    double most = d > 0.0 ? b / d : INFINITY;
-    return root > 0.0 ? fmin(most, rest / root) : rest > 0.0 ? most : 0.0;
+    double square = h * h + g * rest, most = d > 0.0 ? b / d : INFINITY, root = INFINITY;
+    if (square >= 0.0 && h >= 0.0) /* each sign of h has the form that takes no difference of equals */
+        root = h > 0.0 || square > 0.0 ? rest / (h + sqrt(square)) : INFINITY;
+    else if (g > 0.0)
+        root = (sqrt(square) - h) / g;
+    return smaller(most, root);
 }
 
 double trochia_span_reach(const trochia_span *span, int end, double w) {
