@@ -55,11 +55,20 @@ class Piece:
         cubic = segment["kind"] == SegmentKind.CUBIC
         sag3 = np.abs(limits.matrix @ third) if cubic else in_rows * third.max()
         self.sag_w, self.sag_a = eighth * in_rows * fourth * scale, 5 * eighth * sag3 * scale
+        self.cap = limits.path_acceleration
+        self.vectors = (x1[:, : limits.linear] / self.cap, x2[:, : limits.linear] / self.cap)
+        size3, size4 = (np.linalg.norm(third), 0.0) if cubic else (third.max(), fourth)
+        self.cap_w, self.cap_a = eighth * size4 / self.cap, 5 * eighth * size3 / self.cap
+        along = np.linalg.norm(x1, axis=1).max() + eighth * size3
         slow = np.max((np.abs(x1 @ limits.matrix.T).max(axis=0) + eighth * sag3) / limits.velocity)
         # a cubic may be longer than its range of s
         stretch = max(np.linalg.norm(x1, axis=1).max() + eighth * np.linalg.norm(third), 1) if cubic else 1
+        slow = max(slow, along / limits.path_velocity)
         feed = min((segment["speed_limit"] / stretch) ** 2, 1 / slow**2)
-        self.ceiling = [min(feed, 1 / max((abs(k) + self.sag_w).max(), 1e-300)) for k in self.k]
+        bent = np.linalg.norm(self.vectors[1], axis=1) + self.cap_w
+        self.ceiling = [
+            min(feed, 1 / max((abs(k) + self.sag_w).max(), b, 1e-300)) for k, b in zip(self.k, bent, strict=True)
+        ]
 
     @staticmethod
     def _bounds(path, segment, n):
@@ -84,7 +93,26 @@ class Piece:
                 for way in (1, -1):
                     if drain + way * slope > 0:
                         found = min(found, max(0.0, 1 - sag_w * w - way * k * w) / (drain + way * slope))
+            if np.isfinite(self.cap):
+                found = min(found, self._cap(at, sign, travelled, w))
         return 2 * self.length * found
+
+    def _cap(self, at, sign, travelled, w):
+        """The same for the vector: what is asked for is convex in alpha, so its last crossing is found by halving."""
+        x1, x2 = self.vectors[0][at], self.vectors[1][at]
+        drain = 2 * self.length * self.cap_w + self.cap_a
+
+        def over(alpha):
+            asked = np.linalg.norm(x2 * w + (travelled * x2 + sign * x1) * alpha)
+            return asked + drain * alpha > 1 - self.cap_w * w
+
+        low, high = 0.0, 1e-3
+        while not over(high) and high < 1e9:
+            low, high = high, high * 2
+        for _ in range(100):
+            middle = (low + high) / 2
+            low, high = (low, middle) if over(middle) else (middle, high)
+        return low
 
 
 def reference_speeds(path, limits, parts):
@@ -103,7 +131,7 @@ def reference_speeds(path, limits, parts):
 
 
 @pytest.mark.parametrize("text", PROGRAMS.values(), ids=PROGRAMS)
-@pytest.mark.parametrize("name", ["mill", "belts"])
+@pytest.mark.parametrize("name", MACHINES)
 def test_speeds_at_every_joint(name, text):
     machine = MACHINES[name]
     program = gcode.read(text + "\nM2\n")
