@@ -30,9 +30,11 @@ INK, SOFT, FAINT, GRID, RAPID = "#17212b", "#55636f", "#8a97a3", "#e6ebef", "#a9
 #: Width [inch] and dots an inch: 1600 pixels across, sharp where a page shows it at 1000.
 _WIDTH, _DPI = 10.0, 160
 #: Height of the title, and of the speed under the path [inch].
-_HEAD, _FOOT = 1.15, 2.75
+_HEAD, _FOOT = 1.15, 2.85
 _POINTS, _TIMES = 40_000, 4_000
 _DOTS_WANTED = 300
+#: Letters of a title beside the legend.
+_TITLE = 30
 #: The bright end of the map is left out: yellow does not show on white.
 _MAP_END = 0.9
 
@@ -60,7 +62,7 @@ def path_picture(path: Path, data: ReportData) -> None:
         top = _top_feed(data, samples)
         _legend(figure, top)
         _draw_motion(upper, data, samples, columns, top)
-        _draw_speed(figure.add_axes((0.07, 0.3 / tall, 0.905, (_FOOT - 1.15) / tall)), samples, top)
+        _draw_speed(figure.add_axes((0.07, 0.3 / tall, 0.905, (_FOOT - 1.25) / tall)), samples, top)
     buffer = io.BytesIO()
     figure.savefig(buffer, format="png", metadata={"Software": "Trochia"})
     write_whole(path, buffer.getvalue())
@@ -69,8 +71,12 @@ def path_picture(path: Path, data: ReportData) -> None:
 def _title(figure: Figure, data: ReportData) -> None:
     facts = f"{duration(data.time.total)}  ·  {number(data.feed_length, 1)} mm of feed  ·  on {data.machine}"
     tall = figure.get_figheight()
-    figure.text(0.02, 1 - 0.32 / tall, data.program, va="center", fontsize=20, fontweight="bold", color=INK)
+    figure.text(0.02, 1 - 0.32 / tall, _title_text(data.name), va="center", fontsize=20, fontweight="bold", color=INK)
     figure.text(0.02, 1 - 0.66 / tall, facts, va="center", fontsize=12.5, color=SOFT)
+
+
+def _title_text(name: str) -> str:
+    return name if len(name) <= _TITLE else name[: _TITLE - 1] + "…"
 
 
 def _slope(data: ReportData, columns: tuple[int, int]) -> float:
@@ -101,7 +107,7 @@ def _draw_plane(axes: Axes, data: ReportData, columns: tuple[int, int]) -> None:
     axes.set_aspect("equal", adjustable="datalim")
     style: dict[str, Any] = {"xycoords": "axes fraction", "textcoords": "offset points", "fontsize": 12, "color": SOFT}
     across, up = (data.axes[column] for column in columns)
-    axes.annotate(f"{across.name} [mm]", (1, 0), (0, -26), ha="right", va="bottom", **style)
+    axes.annotate(f"{across.name} [mm]", (1, 0), (0, -38), ha="right", va="bottom", **style)
     axes.annotate(f"{up.name} [mm]", (0, 1), (-30, 4), ha="left", va="bottom", **style)
     programmed = data.programmed
     if programmed is None or len(programmed.points) < 2:

@@ -10,6 +10,7 @@ k axes in the order of :attr:`ReportData.axes`.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import PurePath
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -153,7 +154,7 @@ class ReportData:
     Attributes
     ----------
     program, source
-        Name of the program, and its lines of text (line 1 first).
+        File of the program, and its lines of text (line 1 first).
     machine, machine_description
         Name and one sentence.
     ok
@@ -191,6 +192,11 @@ class ReportData:
                             ("samples.position", self.samples and self.samples.position)):  # fmt: skip
             if table is not None and table.shape[1] != len(self.axes):
                 raise ValueError(f"{name} has {table.shape[1]} columns for {len(self.axes)} axes")
+
+    @property
+    def name(self) -> str:
+        """The program's name without its folders: a report is handed on."""
+        return PurePath(self.program).name
 
     @property
     def verdict(self) -> Verdict:

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 #: A peak may exceed its limit by rounding alone; only beyond this share of it is it shown as a fault.
 _ROUNDING = 1e-6
 SLOW_LINES = 20
+#: Errors below this are told in micrometres [mm].
+_SMALL = 0.1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,12 +67,13 @@ class Reach:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ErrorRow:
-    """Peak and root mean square of an error."""
+    """Peak and root mean square of an error, in a unit that suits them, with as many decimals as matter."""
 
     name: str
     unit: str
     peak: float
     rms: float
+    digits: int = 4
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -147,8 +150,10 @@ def errors(data: ReportData) -> list[ErrorRow]:
 
 
 def _error(name: str, unit: str, values: NDArray[np.float64]) -> ErrorRow:
-    rms = float(np.sqrt(np.mean(values**2)))
-    return ErrorRow(name=name, unit=unit, peak=float(np.max(np.abs(values))), rms=rms)
+    peak, rms = float(np.max(np.abs(values))), float(np.sqrt(np.mean(values**2)))
+    if unit == "mm" and peak < _SMALL:
+        return ErrorRow(name=name, unit="µm", peak=1000 * peak, rms=1000 * rms, digits=2)
+    return ErrorRow(name=name, unit=unit, peak=peak, rms=rms)
 
 
 def slow_lines(data: ReportData) -> list[SlowLine]:

@@ -64,7 +64,15 @@ function attachChartInput(chart, motion, store) {
     band.hidden = true;
   });
   canvas.addEventListener("dblclick", () => showWindow(store, motion, motion.start, motion.end));
+}
 
+/**
+ * Keys on a plot: arrows move the cursor, plus and minus zoom about it, Escape shows all.
+ * @param {HTMLCanvasElement} canvas
+ * @param {Motion} motion
+ * @param {Store} store
+ */
+function attachChartKeys(canvas, motion, store) {
   canvas.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const [from, to] = store.state.window;

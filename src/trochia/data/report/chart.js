@@ -126,7 +126,7 @@ class Chart {
     context.lineWidth = 1;
     context.font = theme.font;
     context.strokeStyle = theme.get("grid");
-    context.fillStyle = theme.get("faint");
+    context.fillStyle = theme.get("soft");
     context.textAlign = "right";
     context.textBaseline = "middle";
     const factor = this.factor;

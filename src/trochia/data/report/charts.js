@@ -7,6 +7,17 @@ const AXIS_QUANTITIES = [
   ["acceleration", "Acceleration", "/s²", 0, "acceleration"],
 ];
 
+/** Errors below this are told in micrometres [mm]. */
+const SMALL_ERROR = 0.1;
+
+/** @param {ChartSpec} spec @returns {ChartSpec} in µm, if it is in mm and its values are small */
+function inMicrometres(spec) {
+  const peak = spec.series.reduce((most, { values }) => values.reduce((a, b) => Math.max(a, Math.abs(b)), most), 0);
+  if (spec.unit !== "mm" || peak >= SMALL_ERROR) return spec;
+  const series = spec.series.map((one) => ({ ...one, values: one.values.map((value) => 1000 * value) }));
+  return { ...spec, unit: "µm", digits: 2, series };
+}
+
 /**
  * @param {Motion} motion
  * @returns {ChartSpec[]} linear and rotary axes apart, since their units differ
@@ -26,8 +37,8 @@ function chartSpecs(motion) {
   });
   const specs = [single("Path speed", "mm/s", 2, channels.speed, caps.velocity, true)];
   specs.push(...AXIS_QUANTITIES.flatMap(perAxis));
-  if (channels.following) specs.push(...perAxis(["following", "Following error", "", 4, null]));
-  if (channels.contour) specs.push(single("Contour error", "mm", 4, channels.contour, null, false));
+  if (channels.following) specs.push(...perAxis(["following", "Following error", "", 4, null]).map(inMicrometres));
+  if (channels.contour) specs.push(inMicrometres(single("Contour error", "mm", 4, channels.contour, null, false)));
   return specs;
 }
 
@@ -41,7 +52,10 @@ function chartSpecs(motion) {
 function attachCharts(parent, motion, store) {
   Chart.theme = new Theme();
   const charts = chartSpecs(motion).map((spec) => new Chart(parent, spec, motion, store));
-  for (const chart of charts) attachChartInput(chart, motion, store);
+  for (const chart of charts) {
+    attachChartInput(chart, motion, store);
+    attachChartKeys(chart.canvas, motion, store);
+  }
   store.subscribe((_, changed) => {
     const redraw = ["window", "line", "feed", "hidden"].some((key) => changed.has(key));
     for (const chart of charts) {

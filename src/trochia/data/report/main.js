@@ -96,13 +96,18 @@ function wireFeed(motion, store, view) {
   });
 }
 
+/** @param {number} error [mm] */
+function formatError(error) {
+  return error < SMALL_ERROR ? `${formatFixed(error * 1000, 2)} µm` : `${formatFixed(error, 4)} mm`;
+}
+
 /** The parts of the read-out: line, time, position, speed, error. */
 function readings(motion, state) {
   const now = motion.at(state.time);
   const parts = [["line", String(now.line)], ["", formatTime(now.time)]];
   motion.axes.forEach((axis, i) => parts.push([axis.name, formatFixed(now.position[i], 3)]));
   parts.push(["", `${formatFixed(now.speed * FEED_UNITS[state.feed], feedDigits(state.feed))} ${state.feed}`]);
-  if (now.error) parts.push(["error", `${formatFixed(Math.hypot(...now.error), 4)} mm`]);
+  if (now.error) parts.push(["error", formatError(Math.hypot(...now.error))]);
   return { parts, source: motion.text(now.line) };
 }
 
@@ -179,6 +184,7 @@ function start() {
   wirePathTools(view, motion);
   wireFeed(motion, store, view);
   attachPathInput(view, store);
+  attachPathKeys(view);
   attachLines(store, motion);
   let charts = [];
   if (motion.moves) {

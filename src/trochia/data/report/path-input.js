@@ -69,7 +69,14 @@ function attachPathInput(view, store) {
     view.moved();
   }, { passive: false });
   canvas.addEventListener("dblclick", () => view.fit());
+}
 
+/**
+ * Keys on the path: arrows pan, plus and minus zoom, F fits.
+ * @param {PathView} view
+ */
+function attachPathKeys(view) {
+  const canvas = view.canvases.base;
   const keys = {
     "+": () => view.camera.zoom(ZOOM_KEY),
     "=": () => view.camera.zoom(ZOOM_KEY),

@@ -88,7 +88,7 @@ function drawPaper(context, camera, theme, names) {
     context.lineTo(width, y);
   }
   context.stroke();
-  context.fillStyle = theme.get("faint");
+  context.fillStyle = theme.get("soft");
   context.font = theme.font;
   context.textAlign = "center";
   context.textBaseline = "bottom";

@@ -160,10 +160,14 @@ class PathView {
       this.runs.stroke(context, screen, theme.levels, [first, last]);
     }
     if (shown.rapids) {
-      context.lineWidth = 1.6;
-      context.strokeStyle = theme.get("rapid");
-      context.setLineDash([6, 5]);
-      strokeRuns(context, screen, (i) => i >= first && i < last && motion.path.rapid[i + 1] === 1);
+      const rapid = (i) => i >= first && i < last && motion.path.rapid[i + 1] === 1;
+      // paper first: between the dashes the actual path shows only where it leaves the commanded one
+      for (const [width, colour, dashes] of [[2.6, "paper", []], [1.6, "rapid", [6, 5]]]) {
+        context.lineWidth = width;
+        context.strokeStyle = theme.get(colour);
+        context.setLineDash(dashes);
+        strokeRuns(context, screen, rapid);
+      }
       context.setLineDash([]);
     }
     if (this.gain !== 1) actual();
