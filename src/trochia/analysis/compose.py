@@ -81,7 +81,7 @@ def _axis(plan: Plan, axis: Axis) -> AxisSummary:
 
 def _programmed(plan: Plan) -> ProgrammedPath:
     """Return the path as written, arcs as chords."""
-    path = plan.programmed
+    path = plan.programmed()
     chords = _chords(path)
     rows = np.repeat(np.arange(len(path)), chords)
     step = np.arange(len(rows)) - np.repeat(np.cumsum(chords) - chords, chords) + 1

@@ -12,7 +12,7 @@ import numpy as np
 
 from trochia.planner import Trajectory
 from trochia.planner import plan as plan_motion
-from trochia.toolpath import Measure, Toolpath, build, measure
+from trochia.toolpath import Measure, Toolpath, build, measure_program
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -27,8 +27,6 @@ class Plan:
 
     Attributes
     ----------
-    programmed
-        The path as written, without blends.
     path
         The path as commanded.
     size
@@ -39,10 +37,13 @@ class Plan:
 
     program: Program
     machine: Machine
-    programmed: Toolpath
     path: Toolpath
     size: Measure
     trajectory: Trajectory
+
+    def programmed(self) -> Toolpath:
+        """Return the path as written, without blends, each segment one move; it is built at each call."""
+        return build(self.program, self.machine, blend=False)
 
     @property
     def time_s(self) -> float:
@@ -99,14 +100,12 @@ def make(program: Program, machine: Machine, *, profile: str | None = None) -> P
     profile
         Name of a velocity profile; without it the machine's own, else the planner's default.
     """
-    programmed = build(program, machine, blend=False)
     path = build(program, machine)
     return Plan(
         program=program,
         machine=machine,
-        programmed=programmed,
         path=path,
-        size=measure(programmed),
+        size=measure_program(program, machine),
         trajectory=plan_motion(path, machine, program=program, profile=profile or machine.profile or "trapezoid"),
     )
 

@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 def travel_error(plan: Plan) -> OutOfTravelError | None:
     """Return the error of the first move that leaves the travel; None when all stay inside."""
     axes = plan.machine.axes
-    for path in (plan.programmed, plan.path):
+    inside = fitting_shift(plan.size.extents, axes)
+    for path in (plan.path,) if inside is not None and not inside.any() else (plan.programmed(), plan.path):
         out = first_outside(path, axes)
         if out is not None:
             axis = next(a for a in axes if a.name == out.axis)

@@ -6,7 +6,7 @@ it stays inside the travel.  No time, no limits.
 
 from trochia.kernels.layout import SEGMENT
 from trochia.toolpath.build import build
-from trochia.toolpath.measure import Measure, measure
+from trochia.toolpath.measure import Measure, measure, measure_program
 from trochia.toolpath.toolpath import SegmentKind, Toolpath
 from trochia.toolpath.travel import Outside, first_outside, fitting_shift
 
@@ -20,4 +20,5 @@ __all__ = [
     "first_outside",
     "fitting_shift",
     "measure",
+    "measure_program",
 ]

@@ -1,18 +1,30 @@
-"""What a program's own path measures.  In: a Toolpath without blends.  Out: lengths, counts, extents."""
+"""What a program's own path measures.  In: a Program, or its Toolpath without blends.  Out: lengths, counts, extents.
+
+A whole program is measured in parts, so that the path of a million moves never stands in memory only to be measured:
+touching fresh memory costs more than the arithmetic.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from trochia.program import Spindle, TimeLaw
+from trochia.toolpath.build import build
 from trochia.toolpath.toolpath import SegmentKind
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import NDArray
 
+    from trochia.machine.machine import Machine
+    from trochia.program import Program
     from trochia.toolpath.toolpath import Toolpath
+
+_PART = 16_384  #: moves at a time: their path stays in the cache
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,6 +63,41 @@ def measure(programmed: Toolpath) -> Measure:
         extents=programmed.extents(),
         feed_extents=programmed.extents(feed),
     )
+
+
+def measure_program(program: Program, machine: Machine) -> Measure:
+    """Return the size of a program's own path on a machine; errors are those of :func:`trochia.toolpath.build`."""
+    parts = [measure(build(part, machine, blend=False)) for part in _parts(program)]
+    return Measure(
+        moves=sum(part.moves for part in parts),
+        feed_moves=sum(part.feed_moves for part in parts),
+        feed_length=sum(part.feed_length for part in parts),
+        rapid_length=sum(part.rapid_length for part in parts),
+        extents=_widest([part.extents for part in parts]),
+        feed_extents=_widest([part.feed_extents for part in parts]),
+    )
+
+
+def _widest(bounds: list[NDArray[np.float64]]) -> NDArray[np.float64]:
+    """Return the bounds (2, n) of all bounds."""
+    return np.stack([np.min([low for low, _ in bounds], axis=0), np.max([high for _, high in bounds], axis=0)])
+
+
+def _parts(program: Program) -> Iterator[Program]:
+    """Yield the program in parts of a bounded number of moves; one part at least.
+
+    Of the actions only the spindle's are kept, and only where a feed per revolution asks for them.
+    """
+    start = program.start
+    for first in range(0, max(len(program.moves), 1), _PART):
+        moves = program.moves[first : first + _PART]
+        spindle: tuple[Spindle, ...] = ()
+        if (moves["law"] == TimeLaw.PER_REV).any():
+            until = first + len(moves)
+            before = [action for action in program.actions if isinstance(action, Spindle) and action.at <= until]
+            spindle = tuple(replace(action, at=max(action.at - first, 0)) for action in before)
+        yield replace(program, moves=moves, start=start, actions=spindle)
+        start = moves["target"][-1] if len(moves) else start
 
 
 def _moves_linear_axes(path: Toolpath) -> NDArray[np.bool_]:
