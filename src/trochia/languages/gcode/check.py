@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING
 from trochia.errors import ModalConflictError, ParseError
 from trochia.languages.gcode.numbers import as_integer
 from trochia.languages.gcode.registry import G_CODES, WORDS
+from trochia.languages.gcode.state import NO_MOTION
 
 if TYPE_CHECKING:
     from trochia.languages.gcode.block import Block
     from trochia.languages.gcode.codes import Code
     from trochia.languages.gcode.state import State
 
-_ARCS = (2, 3)
+_ARCS = (20, 30)
 _ARC_CODES = ("G2", "G3")
 _OPEN = frozenset(WORDS) | frozenset("xyzabcuvw")  # letters that need no code beside them
 _WHOLE_TURNS = 1e-3  # P of an arc may miss an integer by this
@@ -57,14 +58,14 @@ def _motion_of(block: Block, state: State) -> Code | None:
     if block.axes:
         return _modal_motion(block, state, explicit)
     if explicit is None and state.motion in _ARCS and not block.values.keys().isdisjoint("ijk"):
-        return G_CODES[state.motion * 10]
+        return G_CODES[state.motion]
     return None
 
 
 def _modal_motion(block: Block, state: State, explicit: Code | None) -> Code:
     """Return the modal motion code that takes the line's axis words."""
-    if explicit is None and state.motion in (0, 1, 2, 3):
-        return G_CODES[state.motion * 10]
+    if explicit is None and state.motion != NO_MOTION:
+        return G_CODES[state.motion]
     first = min((letter for letter in block.values if letter in "xyzabcuvw"), key=lambda letter: block.where[letter])
     why = "G80 stands on the line" if explicit is not None else "no motion code is in force"
     raise block.fault(ModalConflictError, f"nothing takes the axis word {first.upper()}: {why}", first,

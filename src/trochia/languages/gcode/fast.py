@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 
 from trochia.kernels.gcode import OTHER_MOTION, STOP_FULL, PlainReader
 from trochia.languages.gcode.groups.arcs import SHORT_RADIUS, SPIRAL, SPIRAL_MOST, SPIRAL_SHARE
-from trochia.languages.gcode.state import NO_MOTION
 from trochia.program.modes import AXES, TimeLaw
 
 if TYPE_CHECKING:
@@ -19,6 +18,8 @@ if TYPE_CHECKING:
 
     from trochia.languages.gcode.sink import Sink
     from trochia.languages.gcode.state import State
+
+_PLAIN_MOTIONS = {0: 0, 10: 1, 20: 2, 30: 3}  # code in tenths -> what the reader calls it
 
 
 class FastPath:
@@ -53,7 +54,7 @@ class FastPath:
         modal = self._reader.modal
         modal.position = state.position
         modal.feed = state.feed
-        modal.motion = OTHER_MOTION if state.motion == NO_MOTION else state.motion
+        modal.motion = _PLAIN_MOTIONS.get(state.motion, OTHER_MOTION)
         modal.plane = state.plane
         modal.incremental = not state.absolute
         modal.centre_absolute = state.arc_absolute
@@ -67,4 +68,5 @@ class FastPath:
         modal = self._reader.modal
         state.position = list(modal.position)
         state.feed = modal.feed
-        state.motion = NO_MOTION if modal.motion == OTHER_MOTION else modal.motion
+        if modal.motion != OTHER_MOTION:
+            state.motion = 10 * modal.motion

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from trochia.errors import ParseError, ProgramError
 from trochia.languages.gcode.block import sort_words
 from trochia.languages.gcode.check import check
+from trochia.languages.gcode.codes import key_of
 from trochia.languages.gcode.fast import FastPath
 from trochia.languages.gcode.place import Place
 from trochia.languages.gcode.reader import LONGEST_LINE, read_line
@@ -262,7 +263,7 @@ def _pretend_done(block: Block | None, state: State) -> None:
         for axis, value in block.axes.items():
             state.position[axis] = value
     if "motion" in block.groups and block.motion is not None:
-        state.motion = int(block.motion.name[1:])
+        state.motion = key_of(float(block.motion.name[1:]))
     elif block.axes and state.motion == NO_MOTION:
         state.motion = 0
     state.feed = state.feed or 1.0

@@ -30,7 +30,7 @@ class State:
     Attributes
     ----------
     motion
-        Modal motion code: 0, 1, 2, 3, or :data:`NO_MOTION`.
+        Modal motion code in tenths, as the tables have it (10 is G1), or :data:`NO_MOTION`.
     position
         Current point, nine axes, program coordinates.
     feed

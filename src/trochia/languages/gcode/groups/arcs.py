@@ -32,13 +32,13 @@ _OFFSETS = "ijk"  # offset words of X, Y, Z
 def clockwise(block: Block, state: State, sink: Sink) -> None:
     """G2: arc or helix, clockwise."""
     _arc(block, state, sink, -1)
-    state.motion = 2
+    state.motion = 20
 
 
 def counter_clockwise(block: Block, state: State, sink: Sink) -> None:
     """G3: arc or helix, counter-clockwise."""
     _arc(block, state, sink, +1)
-    state.motion = 3
+    state.motion = 30
 
 
 def _arc(block: Block, state: State, sink: Sink, sense: int) -> None:

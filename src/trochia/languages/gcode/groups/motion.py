@@ -35,7 +35,7 @@ def feed(block: Block, state: State, sink: Sink) -> None:
         set_inverse_time(block, sink, _length(state.position, end))
     sink.straight_feed(end)
     state.position = end
-    state.motion = 1
+    state.motion = 10
 
 
 def cancel(block: Block, state: State, sink: Sink) -> None:
