@@ -85,13 +85,13 @@ static inline void cubic_series(const double *g, double s, const double *p, doub
     }
 }
 
-/* phi(s + p) - phi(s) = t1 u + ... + t6 u^6; returns the last power there is (3 but on a spiral). */
+/* phi(s + p) - phi(s) = t1 u + ... + t6 u^6; returns the last power there is (6 on a spiral, 1 at one speed). */
 static inline int turn_series(const joint_curve *curve, double s, const double *p, double *t) {
     double rate = curve->angle_rate + 2.0 * s * curve->angle_curve, bend = curve->angle_curve;
     for (int i = 1; i <= 3; i++)
         t[i] = rate * p[i];
     if (bend == 0.0)
-        return 3;
+        return p[2] == 0.0 && p[3] == 0.0 ? 1 : 3;
     t[2] += bend * p[1] * p[1];
     t[3] += bend * 2.0 * p[1] * p[2];
     t[4] = bend * (p[2] * p[2] + 2.0 * p[1] * p[3]);
@@ -100,13 +100,13 @@ static inline int turn_series(const joint_curve *curve, double s, const double *
     return 6;
 }
 
-/* Whether the Taylor polynomial is good to the end of the stretch: the bound above, on the turn and on the radius. */
-static inline int short_enough(const joint_curve *curve, const double *p, const double *t, int powers, double length) {
+/* How much of the length the bound above allows is used, on the turn and on the radius; beyond 1 it is too long. */
+static inline double used_of(const joint_curve *curve, const double *p, const double *t, int powers) {
     double r = curve->reach, bound = 0.0;
     for (int i = powers; i > 0; i--)
         bound = r * (bound + fabs(t[i]));
-    double way = r * (fabs(p[1]) + r * (fabs(p[2]) + r * fabs(p[3])));
-    return bound <= 10.0 && (curve->radius_rate == 0.0 || way <= length);
+    double way = curve->radius_rate != 0.0 ? r * (fabs(p[1]) + r * (fabs(p[2]) + r * fabs(p[3]))) / curve->length : 0.0;
+    return fmax(0.1 * bound, way);
 }
 
 /* Adds r(s + p) (x cos phi + y sin phi): e is that bracket, f its derivative to phi; e' = f phi', f' = -e phi'. */
@@ -131,18 +131,24 @@ static inline void add_arc_series(const joint_curve *curve, double s, const doub
     }
 }
 
-/* Fills c for the stretch mid +- half; returns 0 when an arc's stretch is too long for the bound. */
-static inline int series_of(const joint_curve *curve, const phase_motion *m, double mid, double half, double *c) {
-    double s = m->s + mid * (m->v + mid * (0.5 * m->a + mid * m->j / 6.0)), t[7];
+/* Fills c for the stretch mid +- half; returns how much of the allowed length that uses, more than 1: not filled. */
+static inline double series_of(const joint_curve *curve, const phase_motion *m, double mid, double half, double *c) {
+    double s = m->s + mid * (m->v + mid * (0.5 * m->a + mid * m->j / 6.0)), t[7], used = 0.0;
     double p[4] = {0.0, (m->v + mid * (m->a + mid * 0.5 * m->j)) * half, 0.5 * (m->a + mid * m->j) * half * half,
                    m->j * half * half * half / 6.0};
     int powers = curve->arc ? turn_series(curve, s, p, t) : 0;
-    if (curve->arc && !short_enough(curve, p, t, powers, curve->length))
-        return 0;
-    cubic_series(curve->g, s, p, c);
     if (curve->arc)
-        add_arc_series(curve, s, p, t, powers, c);
-    return 1;
+        used = used_of(curve, p, t, powers);
+    if (used > 1.0)
+        return used;
+    cubic_series(curve->g, s, p, c);
+    if (curve->arc && powers == 1)
+        add_arc_series(curve, s, p, t, 1, c);
+    else if (curve->arc && powers == 3)
+        add_arc_series(curve, s, p, t, 3, c);
+    else if (curve->arc)
+        add_arc_series(curve, s, p, t, 6, c);
+    return used;
 }
 
 #endif
