@@ -1,7 +1,7 @@
 """Step timing: steps a second of both kernels, as a ratio to a plain C loop, one root a step, run in the same call.
 
-The plain loop is what one writes down first: each step's quadratic solved with ``sqrt``, rounded with ``llround``.  Ours
-go through the Python face, buffers and copies included; the last row goes from a trajectory to step blocks.
+The plain loop is what one writes down first: each step's quadratic solved with ``sqrt``, rounded with ``llround``.
+Ours go through the Python face, buffers and copies included; the last row goes from a trajectory to step blocks.
 """
 
 from __future__ import annotations
