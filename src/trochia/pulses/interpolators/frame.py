@@ -23,7 +23,7 @@ Step = tuple[bool, bool]
 Point = tuple[int, int]
 
 _ROUNDING = 0.75  # steps: a rounded point is at most half a diagonal, 0.71, from its circle
-X, Y, BOTH, NONE = (True, False), (False, True), (True, True), (False, False)
+X, Y, BOTH = (True, False), (False, True), (True, True)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
