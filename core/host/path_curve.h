@@ -34,6 +34,31 @@ typedef struct {
     double length;
 } trochia_blend;
 
+typedef struct {
+    const trochia_path_input *in;
+    trochia_path_output *out;
+    trochia_frame frame;
+    double position[9];
+    uint8_t halt;
+} trochia_reader;
+
+void trochia_start_reader(trochia_reader *r);
+
+/* Reads the move of a row; length 0 where it does not move.  Returns 0, or what is wrong (1 no feed, 2 spindle at
+ * rest). */
+int32_t trochia_read_curve(trochia_reader *r, uint64_t row, trochia_curve *curve);
+
+trochia_segment *trochia_append(trochia_reader *r, double length, double speed, uint32_t move, uint8_t kind);
+
+/* Appends `length` of a curve from `cut` on; nothing at all where both blends meet. */
+void trochia_emit_curve(trochia_reader *r, const trochia_curve *curve, double cut, double length);
+
+void trochia_emit_cubic(trochia_reader *r, const double *c, double length, double speed, uint32_t move);
+
+/* What the joint at a curve's start may take of it, when the joint at its end wants `other`: its wish, or half, or what
+ * is left.  The joint at the end then gets its wish or all that is left. */
+double trochia_share(double wish, double other, double length);
+
 void trochia_curve_at(const trochia_curve *curve, uint32_t n, double s, uint32_t orders, double *out);
 
 /* Greatest norm over the groups: mm and degrees count alike. */

@@ -9,8 +9,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from trochia.analysis.habits import warnings
 from trochia.analysis.margins import margins
 from trochia.analysis.problems import Problem, Severity, from_error, more_lines
@@ -71,16 +69,14 @@ def _slowed(plan: Plan) -> list[Problem]:
     rows = plan.trajectory.slowed
     if not len(rows):
         return []
-    lines = np.unique(plan.program.moves["line"][rows])
-    first = plan.program.moves[rows[0]]
-    more = more_lines(len(lines) - 1)
+    lines = plan.program.moves["line"][rows]
     return [
         Problem(
             severity=Severity.WARNING,
             code="feed-slowed",
             file=plan.program.name,
-            line=int(first["line"]),
-            message=f"the feed is above what the machine's velocity limits allow and is slowed{more}",
+            line=int(lines[0]),
+            message=f"the feed is above what the machine's velocity limits allow and is slowed{more_lines(lines)}",
             hint="Nothing is wrong with the part; only the time is longer than the feed says.",
         )
     ]

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trochia.analysis.problems import Problem, Severity, more_lines
-from trochia.program import Dwell, MoveKind, Pause, Spindle, ToolChange
+from trochia.program import AXES, Dwell, MoveKind, Pause, Spindle, ToolChange
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from numpy.typing import NDArray
 
@@ -40,34 +40,42 @@ def warnings(program: Program, machine: Machine) -> list[Problem]:
         low = _below_lowest_cut(program, moving, rapid)
         found.append(("rapid-below-cut", low, "a rapid runs below the lowest cut", "Lift Z before travelling."))
     problems = [
-        _warn(program, code, moves["line"][mask].tolist(), message, hint)
-        for code, mask, message, hint in found
-        if mask.any()
+        _warn(program, code, moves["line"][mask], message, hint) for code, mask, message, hint in found if mask.any()
     ]
     if machine.beam:
-        lines = list(_lit_rests(program))
-        if lines:
+        lines = np.array(list(_lit_rests(program)), dtype=np.uint32)
+        if lines.size:
             problems.append(
                 _warn(program, "beam-at-rest", lines, "the beam is on at a standstill", "Switch it off (M5) first.")
             )
     return sorted(problems, key=lambda problem: problem.line)
 
 
+def _changed(program: Program, columns: Sequence[int]) -> NDArray[np.bool_]:
+    """Return which moves change any of these columns (moves,); one column at a time, a million moves are long."""
+    changed = np.zeros(len(program.moves), dtype=np.bool_)
+    for column in columns:
+        end = program.moves["target"][:, column]
+        changed[:1] |= end[:1] != program.start[column]
+        changed[1:] |= end[1:] != end[:-1]
+    return changed
+
+
 def _moving(program: Program) -> NDArray[np.bool_]:
     """Return which moves go anywhere (moves,): a full circle does, though it ends where it began."""
-    moves = program.moves
-    return (moves["target"] != program.starts()).any(axis=1) | (moves["kind"] == MoveKind.ARC)
+    return _changed(program, range(len(AXES))) | (program.moves["kind"] == MoveKind.ARC)
 
 
 def _below_lowest_cut(program: Program, moving: NDArray[np.bool_], rapid: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Return which rapids travel in X or Y deeper than any feed move ever is (moves,)."""
-    start, end = program.starts(), program.moves["target"]
-    depth = np.minimum(start[:, _Z], end[:, _Z])
+    end = program.moves["target"][:, _Z]
+    depth = end.copy()
+    depth[:1] = np.minimum(depth[:1], program.start[_Z])
+    depth[1:] = np.minimum(end[1:], end[:-1])
     cuts = moving & ~rapid
     if not cuts.any():
         return cuts
-    travels = (start[:, [_X, _Y]] != end[:, [_X, _Y]]).any(axis=1)
-    return rapid & travels & (depth < depth[cuts].min())
+    return rapid & _changed(program, (_X, _Y)) & (depth < depth[cuts].min())
 
 
 def _lit_rests(program: Program) -> Iterable[int]:
@@ -80,9 +88,9 @@ def _lit_rests(program: Program) -> Iterable[int]:
             yield action.line
 
 
-def _warn(program: Program, code: str, lines: list[int], message: str, hint: str) -> Problem:
+def _warn(program: Program, code: str, lines: NDArray[np.uint32], message: str, hint: str) -> Problem:
     """Return one warning for all lines of a kind."""
-    more = more_lines(len(set(lines)) - 1)
+    more = more_lines(lines)
     return Problem(
-        severity=Severity.WARNING, code=code, file=program.name, line=lines[0], message=message + more, hint=hint
+        severity=Severity.WARNING, code=code, file=program.name, line=int(lines[0]), message=message + more, hint=hint
     )

@@ -6,7 +6,11 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from trochia.errors import TrochiaError
 
 
@@ -55,9 +59,10 @@ class Problem:
         }
 
 
-def more_lines(others: int) -> str:
-    """Return " (and on 3 more lines)", or nothing for none."""
-    return f" (and on {others} more line{'s' if others > 1 else ''})" if others else ""
+def more_lines(lines: NDArray[np.uint32]) -> str:
+    """Return " (and on 3 more lines)" for the different lines beyond the first, or nothing."""
+    others = np.count_nonzero(np.bincount(lines)) - 1  # not np.unique: a million lines are counted faster than sorted
+    return f" (and on {others} more line{'s' if others > 1 else ''})" if others > 0 else ""
 
 
 def from_error(error: TrochiaError, file: str) -> Problem:

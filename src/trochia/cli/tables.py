@@ -64,10 +64,11 @@ def show_plan(plan: Plan) -> None:
         f"{plan.rapid_length_mm:.3f} mm in {plan.size.moves - plan.size.feed_moves} rapids, {plan.program.lines} lines"
     )
     rows = [["axis", "from", "to", "peak velocity", "of", "peak acceleration", "of"]]
+    extents, all_peaks = plan.extents, plan.trajectory.peaks
     for axis in plan.machine.axes:
         unit = "mm" if axis.kind.value == "linear" else "deg"
-        low, high = plan.extents[axis.name]
-        peaks = plan.trajectory.peaks[axis.name]
+        low, high = extents[axis.name]
+        peaks = all_peaks[axis.name]
         rows.append([axis.name, f"{low:.3f}", f"{high:.3f} {unit}", f"{peaks['velocity'] or 0.0:.2f}",
                      f"{axis.velocity:g} {unit}/s", f"{peaks['acceleration'] or 0.0:.1f}",
                      f"{axis.acceleration:g} {unit}/s²"])  # fmt: skip
