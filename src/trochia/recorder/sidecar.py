@@ -119,8 +119,8 @@ def decode(path: Path) -> Description:
 
 
 def raw(records: NDArray[Any]) -> memoryview:
-    """Return the bytes of records as they stand in the file; numpy cannot cast an empty view."""
-    return records.data.cast("B") if len(records) else memoryview(b"")
+    """Return the bytes of records as they stand in the file; not their own buffer, whose field names have no colons."""
+    return records.view(np.uint8).data if len(records) else memoryview(b"")
 
 
 def _described(sidecar: _Sidecar) -> Description:
