@@ -59,7 +59,7 @@ types: setup-test
 	$(BIN)/basedpyright
 
 layers: setup-test
-	$(BIN)/lint-imports
+	$(BIN)/lint-imports --no-cache
 
 c-warnings: setup-test
 	for unit in core/host/*.c; do gcc $(C_FLAGS) -Icore -fsyntax-only $$unit || exit 1; done
