@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trochia.analysis.report import write_whole
 from trochia.analysis.report.decimate import bucket_extremes, bucket_times, simplify
 from trochia.analysis.report.texts import duration, number
+from trochia.files import write_whole
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -5,16 +5,12 @@ from __future__ import annotations
 import io
 import os
 import sys
-from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, BinaryIO
 
 import click
 
 from trochia.cli import options
-
-if TYPE_CHECKING:
-    from collections.abc import Generator
+from trochia.files import whole_file
 
 
 @click.command()
@@ -38,7 +34,7 @@ def command(program: str, output: str | None, block_delete: bool, as_json: bool)
     if as_json:
         _print_json(text, name, block_delete=block_delete)
     elif output is not None:
-        with _whole_file(Path(output)) as out:
+        with whole_file(Path(output)) as out:
             print_text(text, out, name=name, block_delete=block_delete)
     else:
         try:
@@ -65,20 +61,3 @@ def _print_json(text: bytes, name: str, *, block_delete: bool) -> None:
     options.print_json({"ok": not problems, "commands": commands, "problems": problems})
     if problems:
         sys.exit(1)
-
-
-@contextmanager
-def _whole_file(path: Path) -> Generator[BinaryIO]:
-    """Give a file that takes its name only when all of it is written; a device or a pipe is written as it is."""
-    path = path.resolve()
-    if path.exists() and not path.is_file():
-        with path.open("wb") as out:
-            yield out
-        return
-    part = path.with_name(path.name + ".part")
-    try:
-        with part.open("wb") as out:
-            yield out
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)

@@ -10,6 +10,7 @@ import click
 
 from trochia.cli import options
 from trochia.cli.tables import table
+from trochia.files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -153,13 +154,7 @@ def _draw(path: Path, figure: Figure, methods: list[Interpolator], title: str) -
     """Write the picture, whole or not at all."""
     from trochia.pulses.interpolators.picture import picture  # noqa: PLC0415 - it loads matplotlib
 
-    content = picture(figure, methods, title)
-    part = path.with_name(f".{path.name}.part")
-    try:
-        part.write_bytes(content)
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)
+    write_whole(path, picture(figure, methods, title))
 
 
 def _row(merit: Merit) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from trochia.cli import machine_new, machine_show
-from trochia.cli.machine_file import apply_changes, force, output, problem_data, settings, write_whole
+from trochia.cli.machine_file import apply_changes, force, output, problem_data, settings, write_machine
 from trochia.cli.options import as_json, print_json
 from trochia.errors import ConfigError
 from trochia.machine.draft import machine_of
@@ -92,7 +92,7 @@ def import_(  # noqa: PLR0917 - click hands options over by name
     machine = _imported_machine(imported, importer.title, file, name, changes)
     toml = _heading(importer.title, file, imported) + dumps(machine, comments=True)
     if output is not None:
-        write_whole(output, toml, force=force)
+        write_machine(output, toml, force=force)
     if as_json:
         print_json({
             "from": importer.kind,

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import os
-import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from trochia.errors import ConfigError
+from trochia.files import write_whole
 from trochia.machine.draft import put
 
 if TYPE_CHECKING:
@@ -46,7 +45,7 @@ def problem_data(error: MachineError, file: str) -> dict[str, object]:
     }
 
 
-def write_whole(path: Path, text: str, *, force: bool) -> None:
+def write_machine(path: Path, text: str, *, force: bool) -> None:
     """Write a file whole or not at all; one that exists is only replaced when asked.
 
     Raises
@@ -56,23 +55,7 @@ def write_whole(path: Path, text: str, *, force: bool) -> None:
     """
     if path.exists() and not force:
         raise ConfigError(f"{path} exists already", hint="Write over it with --force, or choose another name.")
-    temporary = None
     try:
-        with tempfile.NamedTemporaryFile(
-            "w", encoding="utf-8", dir=path.parent, prefix=f".{path.name}.", delete=False
-        ) as file:
-            temporary = Path(file.name)
-            file.write(text)
-        temporary.chmod(0o666 & ~_umask())
-        os.replace(temporary, path)  # noqa: PTH105 - the one call that is atomic by contract
+        write_whole(path, text.encode())
     except OSError as error:
-        if temporary is not None:
-            temporary.unlink(missing_ok=True)
         raise ConfigError(f"{path}: cannot write the machine file: {error.strerror or error}") from None
-
-
-def _umask() -> int:
-    """Return the process' file mask."""
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask

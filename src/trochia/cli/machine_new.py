@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from trochia.cli import machine_show
-from trochia.cli.machine_file import apply_changes, force, settings, write_whole
+from trochia.cli.machine_file import apply_changes, force, settings, write_machine
 from trochia.errors import ConfigError, MachineError
 from trochia.machine import draft
 from trochia.machine.axes import Axis, AxisKind
@@ -67,7 +67,7 @@ def command(
         _ask_all(document, given)
     apply_changes(document, changes)
     machine = _finish(document, str(file), ask=not defaults)
-    write_whole(file, _heading(machine) + dumps(machine, comments=True), force=force)
+    write_machine(file, _heading(machine) + dumps(machine, comments=True), force=force)
     click.echo(f"\n{machine_show.as_text(machine)}\n\nWritten: {file}.  Use it: trochia check PROGRAM -m {file}")
 
 

@@ -3,25 +3,24 @@
 from __future__ import annotations
 
 import csv
-from contextlib import contextmanager
+import io
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from trochia.files import whole_file
 from trochia.recorder.figures import spans
 from trochia.recorder.sidecar import Description, encode
 
 if TYPE_CHECKING:
-    from collections.abc import Generator
-
     from trochia.recorder.recording import Recording
 
 
 def to_csv(recording: Recording, path: str | Path) -> None:
     """Write one line a sample: time, then every channel, headed by names with units; numbers read back exactly."""
     titles = [f"{c.name} [{c.unit}]" if c.unit else c.name for c in recording.header.channels]
-    with _whole(Path(path)) as partial, partial.open("w", newline="", encoding="utf-8") as file:
+    with whole_file(Path(path)) as out, io.TextIOWrapper(out, newline="", encoding="utf-8") as file:
         table = csv.writer(file)
         table.writerow(["time [s]", *titles])
         for span in spans(len(recording)):
@@ -33,16 +32,5 @@ def to_csv(recording: Recording, path: str | Path) -> None:
 def to_npz(recording: Recording, path: str | Path) -> None:
     """Write numpy's own archive: an array a channel, ``time`` [s], and ``header``, the sidecar's JSON as text."""
     header = encode(Description(header=recording.header, record=recording.header.record, samples=len(recording)))
-    with _whole(Path(path)) as partial, partial.open("wb") as file:
+    with whole_file(Path(path)) as file:
         np.savez(file, allow_pickle=False, time=recording.time, header=header.decode(), **dict(recording.channels))
-
-
-@contextmanager
-def _whole(path: Path) -> Generator[Path]:
-    """Yield a name to write under; it becomes ``path`` when all went well, and goes when not."""
-    partial = path.with_name(path.name + ".partial")
-    try:
-        yield partial
-        partial.replace(path)
-    finally:
-        partial.unlink(missing_ok=True)

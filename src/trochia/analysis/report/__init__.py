@@ -8,7 +8,7 @@ from trochia.analysis.report.data import (
     ReportData,
     TimeParts,
 )
-from trochia.analysis.report.page import render_report, write_report, write_whole
+from trochia.analysis.report.page import render_report, write_report
 
 __all__ = [
     "AxisSummary",
@@ -19,5 +19,4 @@ __all__ = [
     "TimeParts",
     "render_report",
     "write_report",
-    "write_whole",
 ]

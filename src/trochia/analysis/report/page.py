@@ -8,12 +8,12 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
-import os
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any, cast
 
 from trochia.analysis.report import summary, texts
 from trochia.analysis.report.payload import payload
+from trochia.files import write_whole
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -64,22 +64,6 @@ def render_report(data: ReportData) -> str:
         script=script,
         script_hash=_hash(script),
     )  # fmt: skip
-
-
-def write_whole(path: Path, content: bytes) -> None:
-    """Write ``content`` to ``path`` by way of a file beside it, so that no half of it is ever seen.
-
-    Raises
-    ------
-    OSError
-        When the folder or the file cannot be written.
-    """
-    part = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        part.write_bytes(content)
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)
 
 
 def _environment() -> Environment:
