@@ -18,9 +18,14 @@ def test_what_is_written_is_there_and_nothing_else(tmp_path: Path):
 
 def test_an_error_leaves_the_old_file(tmp_path: Path):
     (tmp_path / "a").write_bytes(b"old")
-    with pytest.raises(RuntimeError), whole_file(tmp_path / "a") as out:
-        out.write(b"half")
-        raise RuntimeError
+
+    def half() -> None:
+        with whole_file(tmp_path / "a") as out:
+            out.write(b"half")
+            raise RuntimeError
+
+    with pytest.raises(RuntimeError):
+        half()
     assert (tmp_path / "a").read_bytes() == b"old"
     assert [path.name for path in tmp_path.iterdir()] == ["a"]
 
