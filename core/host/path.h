@@ -64,9 +64,11 @@ typedef struct {
     double tolerance;     /* of the machine, for G64 without P; blends are left out where tolerance < 0 */
     uint32_t axes;        /* columns of the path */
     uint32_t columns[9];  /* which of the nine letters each is */
+    uint32_t continuity;  /* 1: x' is continuous between stops; 2: x'' too */
 } trochia_path_input;
 
-/* What is made of them; room for 3 segments and (7 + 10 axes) coefficients a move is the caller's. */
+/* What is made of them; room for 3 segments and (7 + 10 axes) coefficients a move is the caller's; for continuous
+ * curvature for 6 segments and (7 + 22 axes) coefficients. */
 typedef struct {
     trochia_segment *segments;
     double *pool;

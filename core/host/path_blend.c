@@ -36,8 +36,7 @@ double trochia_group_norm(const trochia_frame *frame, const double *vector) {
     return greatest;
 }
 
-/* Returns 1 where x' is the same before and after, for all that a machine can tell. */
-static int is_tangent(const trochia_frame *frame, const double *before, const double *jump) {
+int trochia_is_tangent(const trochia_frame *frame, const double *before, const double *jump) {
     for (int k = 0; k < 3; k++) {
         uint32_t from = frame->groups[k], to = frame->groups[k + 1];
         if (from < to && norm_between(jump, from, to) > TANGENT * fmax(1.0, norm_between(before, from, to)))
@@ -46,7 +45,7 @@ static int is_tangent(const trochia_frame *frame, const double *before, const do
     return 1;
 }
 
-static int is_reversal(uint32_t n, const double *before, const double *after) {
+int trochia_is_reversal(uint32_t n, const double *before, const double *after) {
     double dot = 0.0, one = 0.0, two = 0.0;
     for (uint32_t i = 0; i < n; i++) {
         dot += before[i] * after[i];
@@ -86,10 +85,10 @@ trochia_joint trochia_joint_wanted(const trochia_frame *frame, const trochia_cur
     }
     for (uint32_t i = 0; i < frame->n; i++)
         jump[i] = b->t0[i] - a->t1[i];
-    if (is_tangent(frame, a->t1, jump))
+    if (trochia_is_tangent(frame, a->t1, jump))
         return joint;
     double tolerance = fmin(a->tolerance, b->tolerance);
-    if (!(tolerance > 0.0) || is_reversal(frame->n, a->t1, b->t0)) {
+    if (!(tolerance > 0.0) || trochia_is_reversal(frame->n, a->t1, b->t0)) {
         joint.stop = 1;
         return joint;
     }

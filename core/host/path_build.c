@@ -47,6 +47,8 @@ static void settle(trochia_reader *r, const trochia_curve *a, const trochia_curv
 }
 
 int32_t trochia_path_build(const trochia_path_input *input, trochia_path_output *output) {
+    if (input->continuity > 1)
+        return trochia_path_smooth(input, output);
     trochia_reader reader = {.in = input, .out = output};
     trochia_curve curves[3];
     trochia_curve *a = NULL, *b = NULL, *c = &curves[0]; /* the last two curves, and where the next is read to */

@@ -64,6 +64,12 @@ void trochia_curve_at(const trochia_curve *curve, uint32_t n, double s, uint32_t
 /* Greatest norm over the groups: mm and degrees count alike. */
 double trochia_group_norm(const trochia_frame *frame, const double *vector);
 
+/* Returns 1 where x' is the same before and after, for all that a machine can tell. */
+int trochia_is_tangent(const trochia_frame *frame, const double *before, const double *jump);
+
+/* Returns 1 within 2 degrees of turning back. */
+int trochia_is_reversal(uint32_t n, const double *before, const double *after);
+
 /* What is wanted where `a` meets `b`, if both had all the length in the world. */
 trochia_joint trochia_joint_wanted(const trochia_frame *frame, const trochia_curve *a, const trochia_curve *b);
 
@@ -71,5 +77,8 @@ trochia_joint trochia_joint_wanted(const trochia_frame *frame, const trochia_cur
  * tolerance; where none does, the joint becomes a stop. */
 void trochia_joint_blend(const trochia_frame *frame, const trochia_curve *a, const trochia_curve *b,
                          trochia_joint *joint, trochia_blend *blend);
+
+/* trochia_path_build with continuous curvature. */
+int32_t trochia_path_smooth(const trochia_path_input *input, trochia_path_output *output);
 
 #endif

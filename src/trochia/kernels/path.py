@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _COEFFICIENTS = {lib.TROCHIA_LINE: (0, 2), lib.TROCHIA_ARC_SEGMENT: (7, 2), lib.TROCHIA_CUBIC: (0, 4)}
+_ROOM = {1: (3, 10), 2: (6, 22)}  #: segments, and coefficients an axis, that a move may need
 _NINE = 9
 _FAULTS = {0: None, 1: "feed", 2: "spindle"}
 
@@ -29,6 +30,7 @@ def build(
     start: NDArray[np.float64],
     columns: Sequence[int],
     tolerance: float,
+    continuity: int = 1,
 ) -> tuple[NDArray[np.void], NDArray[np.float64], tuple[str, int] | None]:
     """Return the segments and coefficients of a program's moves, and what stopped the work, if anything did.
 
@@ -46,6 +48,8 @@ def build(
         Which of the nine letters the path's axes are, rising.
     tolerance
         Of G64 without P [mm]; negative: no blends at all.
+    continuity
+        1: x' is continuous between stops; 2: x'' too.
 
     Returns
     -------
@@ -64,15 +68,18 @@ def build(
     speeds = np.zeros(count) if rpm is None else np.ascontiguousarray(rpm, dtype=np.float64)
     if speeds.shape != moves.shape:
         raise ValueError("one spindle speed a move")
-    segments = np.empty(3 * count, dtype=SEGMENT)
-    pool = np.empty((7 + 10 * axes) * count)
+    if continuity not in _ROOM:
+        raise ValueError(f"continuity is 1 or 2, not {continuity!r}")
+    room, rows = _ROOM[continuity]
+    segments = np.empty(room * count, dtype=SEGMENT)
+    pool = np.empty((7 + rows * axes) * count)
     given = ffi.new("trochia_path_input *")
     made = ffi.new("trochia_path_output *")
     flags = np.ascontiguousarray(rests, dtype=np.uint8)
     given.moves, given.rests, given.rpm = (
         pointer(moves, "trochia_move *"), pointer(flags, "uint8_t *"), pointer(speeds, "double *")
     )  # fmt: skip
-    given.count, given.axes, given.tolerance = count, axes, tolerance
+    given.count, given.axes, given.tolerance, given.continuity = count, axes, tolerance, continuity
     given.start = list(start)
     given.columns = list(columns) + [0] * (_NINE - axes)
     made.segments, made.pool = pointer(segments, "trochia_segment *"), pointer(pool, "double *")

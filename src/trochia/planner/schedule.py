@@ -55,6 +55,11 @@ class Schedule(Protocol):
 class Profile(Protocol):
     """A way to decide speed: one row of :data:`trochia.planner.PROFILES`."""
 
+    @property
+    def continuity(self) -> int:
+        """What its path must keep between stops: 1, direction; 2, curvature too (see ``toolpath.build``)."""
+        ...
+
     def __call__(self, path: Toolpath, limits: Limits, rests: Rests) -> Schedule:
         """Return the schedule of a path with at least one segment."""
         ...

@@ -6,7 +6,7 @@ that holds everywhere between its ends.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -27,6 +27,7 @@ class TrapezoidSchedule:
 
     __slots__ = ("_planned", "_segments")
 
+    continuity: ClassVar[int] = 1
     jerk_limited = False
 
     def __init__(self, path: Toolpath, limits: Limits, rests: Rests) -> None:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from trochia.program import Program
 
 
-def build(program: Program, machine: Machine, *, blend: bool = True) -> Toolpath:
+def build(program: Program, machine: Machine, *, blend: bool = True, continuity: int = 1) -> Toolpath:
     """Return the path of a program on a machine.
 
     Parameters
@@ -30,6 +30,9 @@ def build(program: Program, machine: Machine, *, blend: bool = True) -> Toolpath
         Its axes are the path's columns, its ``path_tolerance`` holds where G64 gives no P.
     blend
         False gives the programmed path itself, which stops wherever direction jumps.
+    continuity
+        What is continuous where motion does not stop: 1, direction; 2, curvature too (``Profile.continuity`` says what
+        a velocity profile needs).
 
     Raises
     ------
@@ -42,7 +45,7 @@ def build(program: Program, machine: Machine, *, blend: bool = True) -> Toolpath
     columns = machine.columns
     segments, pool, fault = kernel.build(
         program.moves, _rests(program), _spindle_speeds(program), start=program.start, columns=columns,
-        tolerance=machine.path_tolerance if blend else -1.0,
+        tolerance=machine.path_tolerance if blend else -1.0, continuity=continuity,
     )  # fmt: skip
     if fault:
         raise _no_speed(program, *fault)

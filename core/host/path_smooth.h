@@ -1,0 +1,77 @@
+/* Curvature-continuous paths: what is known of each move while its neighbours are settled.
+ *
+ * Internal to path_*.c, not part of the schema.  path_smooth.c explains the curve.
+ * Legend: m jump of x' at a joint, h length of a line, d leg of a corner, P tolerance. */
+#ifndef TROCHIA_PATH_SMOOTH_H
+#define TROCHIA_PATH_SMOOTH_H
+
+#include "host/path_curve.h"
+
+enum trochia_turn_kind {
+    TROCHIA_TURN_NONE = 0,   /* direction and curvature go on */
+    TROCHIA_TURN_STOP = 1,   /* motion rests */
+    TROCHIA_TURN_CORNER = 2, /* two lines: a triangle of x'' with two equal legs */
+    TROCHIA_TURN_CHAIN = 3,  /* two lines of a chain: hats of x'' over whole lines */
+    TROCHIA_TURN_ARC = 4     /* an arc takes part: three cubics */
+};
+
+/* What happens where a curve begins. */
+typedef struct {
+    uint8_t kind;
+    int8_t lean;      /* chain: whether part of the hat stands at the joint before (-1) or after (1) */
+    double jump[9];   /* m */
+    double size;      /* |m| by groups */
+    double tolerance; /* P */
+    double wish;      /* length wanted on either side */
+    double before, after;
+    double used;      /* part of P that kernels of this and the neighbouring joints have taken here */
+    double own, lent; /* chain: x'' / m here and at the joint leant on */
+} trochia_turn;
+
+/* x'' that chains put on a line, even between its ends: x = e0 + d0 s + ... on top of the line. */
+typedef struct {
+    int there;
+    double e0[9], d0[9], y0[9], y1[9];
+} trochia_bend;
+
+typedef struct {
+    trochia_curve curve;
+    trochia_turn turn; /* at its start */
+    trochia_bend bend;
+} trochia_link;
+
+/* Three cubics of equal length. */
+typedef struct {
+    double c[3][36];
+    double length; /* of each */
+} trochia_bridge;
+
+/* Sets kind, m, P and wish of the joint from `a` to `b`. */
+void trochia_turn_classify(const trochia_frame *frame, const trochia_curve *a, const trochia_curve *b,
+                           trochia_turn *turn);
+
+/* Makes the three cubics from `before` the joint to `after` it, shrinking both until they are proven to stay inside
+ * P; where none do, the turn becomes a stop. */
+void trochia_bridge_settle(const trochia_frame *frame, const trochia_curve *a, const trochia_curve *b,
+                           trochia_turn *turn);
+
+void trochia_bridge_make(const trochia_frame *frame, const trochia_curve *a, const trochia_curve *b,
+                         const trochia_turn *turn, trochia_bridge *bridge);
+
+/* Appends a line with what corners at its ends and chains across it make of it; `next` is the turn at its end. */
+void trochia_emit_bent(trochia_reader *r, const trochia_link *link, const trochia_turn *next);
+
+/* Where settling a joint looks: links of its neighbourhood by number, `count` of them so far. */
+typedef struct {
+    trochia_link *ring; /* 8 of them */
+    uint64_t count;
+} trochia_chain;
+
+static inline trochia_link *trochia_link_at(const trochia_chain *chain, uint64_t number) {
+    return &chain->ring[number & 7u];
+}
+
+/* Settles the joint of two lines at the start of link `i`: a chain's hats where these stay inside P, else a corner. */
+void trochia_turn_settle(const trochia_chain *chain, uint32_t n, uint64_t i);
+
+#endif
