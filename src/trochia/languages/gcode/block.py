@@ -23,6 +23,7 @@ _Error = TypeVar("_Error", bound=ProgramError)
 AXIS = {letter: column for column, letter in enumerate("xyzabcuvw")}
 _VALUES = frozenset("dehijklpqr") | frozenset(WORDS) | frozenset(AXIS)
 _NOT_NEGATIVE = frozenset("fst")
+_WHOLE = frozenset("l")
 
 
 @dataclass(slots=True)
@@ -106,6 +107,10 @@ def _add_value(block: Block, word: Word, allowed: str) -> None:
                                 hint=f"Axis words are {' '.join(allowed.upper())}.")  # fmt: skip
     if letter in _NOT_NEGATIVE and value < 0:
         raise block.place.fault(ParseError, f"{letter.upper()} must not be negative", at)
+    if letter in _WHOLE:
+        count = as_integer(value)
+        if count is None or count < 0:
+            raise block.place.fault(ParseError, f"{letter.upper()} must be a whole number, 0 or more", at)
     block.values[letter] = value
     block.where[letter] = at
     column = AXIS.get(letter)

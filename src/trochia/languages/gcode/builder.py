@@ -72,6 +72,7 @@ class Builder:
         self._direction = 0
         self._speed: float | None = None
         self._mist = self._flood = False
+        self._kept_path = (PathMode.BLEND_DEFAULT, [0.0, 0.0])
 
     def program(self, lines: int) -> Program:
         """Return the program; ``lines`` is the number of lines of its text."""
@@ -215,6 +216,19 @@ class Builder:
         self._flush()
         self._placement.tolerance[1] = tolerance * self._placement.scale
 
+    def begin_exact_path(self) -> None:
+        """Keep to the path, and remember how it was followed."""
+        self._flush()
+        placement = self._placement
+        self._kept_path = PathMode(placement.path_mode), list(placement.tolerance)
+        placement.path_mode, placement.tolerance = PathMode.EXACT_PATH, [0.0, 0.0]
+
+    def end_exact_path(self, mode: PathMode, tolerance: float, along: float) -> None:
+        """Follow the path as before."""
+        del mode, tolerance, along
+        self._flush()
+        self._placement.path_mode, self._placement.tolerance = self._kept_path
+
     def set_feed_reference(self) -> None:
         """Nothing: feeds always refer to the part."""
 
@@ -244,6 +258,15 @@ class Builder:
         if direction != self._direction or (direction and speed != self._speed):
             self._actions.append(Spindle(at=self._at, line=self.line, direction=direction, speed=speed or 0.0))
         self._direction, self._speed = direction, speed
+
+    def orient_spindle(self, degrees: float, direction: int) -> None:
+        """Nothing: no machine here turns its spindle to an angle."""
+
+    def feed_override(self, *, on: bool) -> None:
+        """Nothing: what the operator may change does not change the program."""
+
+    def speed_override(self, *, on: bool) -> None:
+        """Nothing: what the operator may change does not change the program."""
 
     def mist(self, *, on: bool) -> None:
         """Switch mist."""

@@ -144,6 +144,15 @@ class Canon:
         """Print the tolerance of merging points."""
         self._print(f"SET_NAIVECAM_TOLERANCE({tolerance:.4f})\n")
 
+    def begin_exact_path(self) -> None:
+        """Print the path mode of a canned cycle."""
+        self.set_motion_control_mode(PathMode.EXACT_PATH, 0.0)
+
+    def end_exact_path(self, mode: PathMode, tolerance: float, along: float) -> None:
+        """Print the path mode after a canned cycle."""
+        self.set_motion_control_mode(mode, tolerance)
+        self.set_naivecam_tolerance(along)
+
     def set_feed_reference(self) -> None:
         """Print what the feed refers to."""
         self._print("SET_FEED_REFERENCE(CANON_XYZ)\n")
@@ -163,6 +172,18 @@ class Canon:
     def stop_spindle(self) -> None:
         """Print the spindle's stop."""
         self._print("STOP_SPINDLE_TURNING(0)\n")
+
+    def orient_spindle(self, degrees: float, direction: int) -> None:
+        """Print the spindle's turn to an angle."""
+        self._print(f"ORIENT_SPINDLE(0, {degrees:.4f}, {direction})\n")
+
+    def feed_override(self, *, on: bool) -> None:
+        """Print whether the operator may change the feed."""
+        self._print(f"{'ENABLE' if on else 'DISABLE'}_FEED_OVERRIDE()\n")
+
+    def speed_override(self, *, on: bool) -> None:
+        """Print whether the operator may change the spindle speed."""
+        self._print(f"{'ENABLE' if on else 'DISABLE'}_SPEED_OVERRIDE(0)\n")
 
     def mist(self, *, on: bool) -> None:
         """Print mist coolant."""

@@ -41,6 +41,8 @@ def check(block: Block, state: State) -> None:
         _check_non_modal(block, state, other)
     if block.motion is not None and block.motion.name in _ARC_CODES and "p" in block.values:
         _check_turns(block)
+    if block.motion is not None and block.motion.check is not None:
+        block.motion.check(block, state)
 
 
 def _motion_of(block: Block, state: State) -> Code | None:

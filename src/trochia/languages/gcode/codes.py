@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from trochia.languages.gcode.state import State
 
 Handler = Callable[["Block", "State", "Sink"], None]
+Check = Callable[["Block", "State"], None]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,6 +38,8 @@ class Code:
         Letters it reads, beside axis words and F, S, T.
     takes_axes
         It takes the axis words, so that no motion code can stand beside it.
+    check
+        For a motion code: refuses a line that is wrong before anything on it acts.
     """
 
     name: str
@@ -46,6 +49,7 @@ class Code:
     run: Handler
     words: str = ""
     takes_axes: bool = False
+    check: Check | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from trochia.languages.gcode.cycles import bore, drill, tap
 from trochia.languages.gcode.groups import (
     arcs,
     compensation,
@@ -74,6 +75,9 @@ G_CODES: dict[int, Code] = {
     **feed.G_CODES,
     **spindle.G_CODES,
     **retract.G_CODES,
+    **drill.G_CODES,
+    **tap.G_CODES,
+    **bore.G_CODES,
 }
 
 #: number in tenths -> code

@@ -70,6 +70,12 @@ class Sink(Protocol):
     def set_naivecam_tolerance(self, tolerance: float) -> None:
         """Say by how much points may be left out along the path."""
 
+    def begin_exact_path(self) -> None:
+        """Keep to the path while a canned cycle runs."""
+
+    def end_exact_path(self, mode: PathMode, tolerance: float, along: float) -> None:
+        """Follow the path again as before :meth:`begin_exact_path`; the numbers are those that were given then."""
+
     def set_feed_reference(self) -> None:
         """Say that feeds refer to the part."""
 
@@ -84,6 +90,15 @@ class Sink(Protocol):
 
     def stop_spindle(self) -> None:
         """Stop spindle or beam."""
+
+    def orient_spindle(self, degrees: float, direction: int) -> None:
+        """Turn the spindle to an angle: 0 the shorter way, 1 clockwise, 2 counter-clockwise."""
+
+    def feed_override(self, *, on: bool) -> None:
+        """Let the operator change the feed, or not."""
+
+    def speed_override(self, *, on: bool) -> None:
+        """Let the operator change the spindle speed, or not."""
 
     def mist(self, *, on: bool) -> None:
         """Switch mist coolant."""

@@ -45,6 +45,12 @@ class State:
         G92 offset that G92.3 brings back [mm].
     homes
         Points of G28 and G30, machine coordinates [mm].
+    tolerance, tolerance_along
+        G64 P and Q as they act, in the unit they were given in.
+    retract_to_r
+        G99: canned cycles go back to R, not to where the first of them began.
+    cycle_words
+        Words that stay in force from one hole of a canned cycle to the next, and its initial level.
     """
 
     motion: int = NO_MOTION
@@ -56,6 +62,10 @@ class State:
     feed: float = 0.0
     position: list[float] = field(default_factory=_zeros)
     path_mode: PathMode = PathMode.BLEND_DEFAULT
+    tolerance: float = 0.0
+    tolerance_along: float = 0.0
+    retract_to_r: bool = True
+    cycle_words: dict[str, float] = field(default_factory=dict[str, float])
 
     system: int = 1
     origin: list[float] = field(default_factory=_zeros)

@@ -18,26 +18,27 @@ if TYPE_CHECKING:
 
 def exact_path(block: Block, state: State, sink: Sink) -> None:
     """G61: keep to the path."""
-    del block, state
+    del block
+    state.path_mode = PathMode.EXACT_PATH
     sink.set_motion_control_mode(PathMode.EXACT_PATH, 0.0)
 
 
 def exact_stop(block: Block, state: State, sink: Sink) -> None:
     """G61.1: stop at every end point."""
-    del block, state
+    del block
+    state.path_mode = PathMode.EXACT_STOP
     sink.set_motion_control_mode(PathMode.EXACT_STOP, 0.0)
 
 
 def blend(block: Block, state: State, sink: Sink) -> None:
     """G64: blend corners within P; drop points within Q, or P where no Q is given.  A negative value counts as none."""
-    del state
     tolerance = block.values.get("p", -1.0)
-    if tolerance >= 0:
-        sink.set_motion_control_mode(PathMode.BLEND, tolerance)
-    else:
-        sink.set_motion_control_mode(PathMode.BLEND_DEFAULT, 0.0)
+    state.path_mode = PathMode.BLEND if tolerance >= 0 else PathMode.BLEND_DEFAULT
+    state.tolerance = max(tolerance, 0.0)
+    sink.set_motion_control_mode(state.path_mode, state.tolerance)
     along = block.values.get("q", -1.0)
-    sink.set_naivecam_tolerance(along if along >= 0 else max(tolerance, 0.0))
+    state.tolerance_along = along if along >= 0 else state.tolerance
+    sink.set_naivecam_tolerance(state.tolerance_along)
 
 
 _GROUP = "path control"

@@ -1,4 +1,4 @@
-"""G98, G99: where a canned cycle retracts to.  No cycle reads it yet; files have it in their first line."""
+"""G98, G99: where a canned cycle retracts to.  In: nothing.  Out: a remark, and the state."""
 
 from __future__ import annotations
 
@@ -12,15 +12,22 @@ if TYPE_CHECKING:
     from trochia.languages.gcode.state import State
 
 
-def _use(name: str) -> Handler:
+def _use(name: str, *, to_r: bool) -> Handler:
     def use(block: Block, state: State, sink: Sink) -> None:
-        del block, state
+        del block
+        state.retract_to_r = to_r
         sink.comment(f"interpreter: retract mode set to {name}")
 
     return use
 
 
 G_CODES = table(
-    Code(name="G98", about="cycles retract to where they began", group="retract", step="retract", run=_use("old_z")),
-    Code(name="G99", about="cycles retract to R", group="retract", step="retract", run=_use("r_plane")),
+    Code(
+        name="G98",
+        about="cycles retract to where they began",
+        group="retract",
+        step="retract",
+        run=_use("old_z", to_r=False),
+    ),
+    Code(name="G99", about="cycles retract to R", group="retract", step="retract", run=_use("r_plane", to_r=True)),
 )
