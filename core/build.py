@@ -18,6 +18,7 @@ HEADERS = [
     "host/move.h",
     "host/path.h",
     "host/plan.h",
+    "host/scurve.h",
     "host/steps.h",
     "shared/interpolate.h",
     "host/interpolate.h",

@@ -20,19 +20,22 @@ def mill():
 
 
 def test_a_line_from_rest_to_rest_takes_its_formula(mill: object):
-    # 50 mm/s at 800 mm/s²: 100/50 + 50/800
-    plan = trochia.plan(trochia.gcode("G21 G61 G1 X100 F3000\nM2\n"), mill)
-    assert plan.time_s == pytest.approx(2.0625, abs=1e-12)
+    # 50 mm/s at 800 mm/s²: 100/50 + 50/800; with 20,000 mm/s³ 800/20,000 more
+    line = trochia.gcode("G21 G61 G1 X100 F3000\nM2\n")
+    assert trochia.plan(line, mill, profile="trapezoid").time_s == pytest.approx(2.0625, abs=1e-12)
+    assert trochia.plan(line, mill).time_s == pytest.approx(2.1025, abs=1e-9)
 
 
 def test_a_square_with_exact_stops_takes_its_formula(mill: object):
     # each side: 40 mm at 100 mm/s, and 100 mm/s of ramps at 800 mm/s²
-    plan = trochia.plan(trochia.gcode(SQUARE.format(mode="G61.1")), mill)
-    assert plan.time_s == pytest.approx(2.1, abs=1e-12)
+    square = trochia.gcode(SQUARE.format(mode="G61.1"))
+    assert trochia.plan(square, mill, profile="trapezoid").time_s == pytest.approx(2.1, abs=1e-12)
+    assert trochia.plan(square, mill).time_s == pytest.approx(2.26, abs=1e-9)
 
 
 def test_blending_is_faster_and_looser_is_faster_still(mill: object):
-    times = [trochia.plan(trochia.gcode(SQUARE.format(mode=m)), mill).time_s for m in ("G61.1", "G64P0.01", "G64P1")]
+    squares = [trochia.gcode(SQUARE.format(mode=mode)) for mode in ("G61.1", "G64P0.01", "G64P1")]
+    times = [trochia.plan(square, mill, profile="trapezoid").time_s for square in squares]
     assert times == sorted(times, reverse=True)
     assert times[2] < times[1] < times[0]
 
@@ -111,8 +114,8 @@ def test_feed_above_the_limit_is_slowed_and_told(mill: object):
     verdict = trochia.check("G21 M3 S100\nG1 X100 F60000\nM5\nM2\n", mill)
     assert verdict.ok
     assert [(p.code, p.line) for p in verdict.problems] == [("feed-slowed", 2)]
-    # 200 mm/s at 800 mm/s²: 50 mm of ramps, 50 mm of cruise
-    assert verdict.time_s == pytest.approx(100 / 200 + 200 / 800)
+    # 200 mm/s at 800 mm/s² and 20,000 mm/s³: 58 mm of ramps, the rest at full speed
+    assert verdict.time_s == pytest.approx(100 / 200 + 200 / 800 + 800 / 20_000)
 
 
 def test_margins_are_what_is_left(mill: object):

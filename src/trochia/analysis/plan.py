@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trochia.planner import Trajectory
+from trochia.planner import PROFILES, Trajectory, profile_of
 from trochia.planner import plan as plan_motion
 from trochia.toolpath import Measure, Toolpath, build, measure_program
 
@@ -103,13 +103,14 @@ def make(program: Program, machine: Machine, *, profile: str | None = None) -> P
     profile
         Name of a velocity profile; without it the machine's own, else the planner's default.
     """
-    path = build(program, machine)
+    name = profile_of(machine, profile)
+    path = build(program, machine, continuity=PROFILES[name].continuity)
     return Plan(
         program=program,
         machine=machine,
         path=path,
         size=measure_program(program, machine),
-        trajectory=plan_motion(path, machine, program=program, profile=profile or machine.profile or "trapezoid"),
+        trajectory=plan_motion(path, machine, program=program, profile=name),
     )
 
 

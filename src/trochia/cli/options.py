@@ -26,7 +26,9 @@ as_json = click.option(
     "--json", "as_json", is_flag=True, help="One JSON object on standard output; progress on standard error."
 )
 profile = click.option(
-    "--profile", metavar="NAME", help="Velocity profile; without it the machine's own, else trapezoid."
+    "--profile",
+    metavar="NAME",
+    help="Velocity profile; without it the machine's own, else s-curve where every axis has a jerk limit.",
 )
 
 

@@ -5,9 +5,20 @@ A velocity profile is one file and one row of :data:`PROFILES`.
 
 from trochia.kernels.layout import PHASE
 from trochia.planner.limits import Limits
-from trochia.planner.plan import PROFILES, plan
+from trochia.planner.plan import PROFILES, plan, profile_of
 from trochia.planner.rests import Rests, rests_of
 from trochia.planner.schedule import Profile, Schedule
 from trochia.planner.trajectory import Trajectory
 
-__all__ = ["PHASE", "PROFILES", "Limits", "Profile", "Rests", "Schedule", "Trajectory", "plan", "rests_of"]
+__all__ = [
+    "PHASE",
+    "PROFILES",
+    "Limits",
+    "Profile",
+    "Rests",
+    "Schedule",
+    "Trajectory",
+    "plan",
+    "profile_of",
+    "rests_of",
+]

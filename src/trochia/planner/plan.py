@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from trochia.errors import LimitError
 from trochia.planner.limits import Limits
 from trochia.planner.rests import rests_of
+from trochia.planner.s_curve import SCurveSchedule
 from trochia.planner.trajectory import Trajectory
 from trochia.planner.trapezoid import TrapezoidSchedule
 
@@ -17,19 +18,40 @@ if TYPE_CHECKING:
     from trochia.toolpath import Toolpath
 
 #: every velocity profile by its name
-PROFILES: dict[str, Profile] = {"trapezoid": TrapezoidSchedule}
+PROFILES: dict[str, Profile] = {"trapezoid": TrapezoidSchedule, "s-curve": SCurveSchedule}
 
 
-def plan(path: Toolpath, machine: Machine, *, program: Program, profile: str = "trapezoid") -> Trajectory:
-    """Return the motion of a program along its path, as fast as the machine's limits allow.
+def profile_of(machine: Machine, asked: str | None = None) -> str:
+    """Return the name of the profile to plan with: that asked for, else the machine's own, else the smoothest it can.
+
+    That is ``s-curve`` where every axis has a jerk limit, else ``trapezoid``.
 
     Raises
     ------
     LimitError
         When there is no such profile.
     """
-    if profile not in PROFILES:
-        raise LimitError(f"there is no velocity profile {profile!r}", hint="There are: " + ", ".join(sorted(PROFILES)))
+    smoothest = "s-curve" if all(axis.jerk is not None for axis in machine.axes) else "trapezoid"
+    name = asked or machine.profile or smoothest
+    if name not in PROFILES:
+        raise LimitError(f"there is no velocity profile {name!r}", hint="There are: " + ", ".join(sorted(PROFILES)))
+    return name
+
+
+def plan(path: Toolpath, machine: Machine, *, program: Program, profile: str = "trapezoid") -> Trajectory:
+    """Return the motion of a program along its path, as fast as the machine's limits allow.
+
+    Parameters
+    ----------
+    path
+        Built with the profile's ``continuity``; with less, a profile stops where what it needs is missing.
+
+    Raises
+    ------
+    LimitError
+        When there is no such profile, or the machine lacks what it needs.
+    """
+    profile = profile_of(machine, profile)
     limits = Limits.of(machine)
     rests = rests_of(program, machine, path)
     schedule = PROFILES[profile](path, limits, rests) if len(path) else None

@@ -59,7 +59,8 @@ def test_plan_json_has_its_keys():
     assert plan["time_s"] == pytest.approx(plan["motion_s"] + plan["dwell_s"] + plan["spindle_s"] + plan["tool_s"])
     assert (plan["feed_moves"], round(plan["feed_length_mm"], 3)) == (194, 1319.713)
     assert plan["peaks"]["X"]["velocity"] == pytest.approx(40.0, rel=1e-3)  # never above; on arcs a hair below
-    assert plan["peaks"]["X"]["jerk"] is None
+    assert plan["profile"] == "s-curve"  # the machine gives jerk
+    assert plan["peaks"]["X"]["jerk"] == pytest.approx(2660.0, rel=1e-3)
     assert plan["extents"]["X"][0] == 0.0  # the start counts as motion
     assert len(plan["line_times"]) == 5
 

@@ -1,0 +1,197 @@
+/* The limits of each stretch of a path: the greatest derivatives of every limited quantity along it. */
+#include <math.h>
+
+#include "host/scurve_ramp.h"
+
+static const double ARC_PART = 0.2618; /* rad: 15 degrees; a row sees cosine and sine of its own part of the circle */
+static const double ARC_FINE = 0.0524; /* rad: 3 degrees on wide arcs, so that ramps find places to begin and end */
+static const double ARC_LONG = 4.0;    /* mm: that wide */
+static const double SAME_BEND = 1e-6;  /* curvature agrees to this part: what rounding leaves of a blend's zero ends */
+/* At the very ceiling nothing would be left for a; this much less leaves enough to follow ceilings that rounding sets
+ * apart. */
+static const double RESERVE = 1.0 - 1e-6;
+static const double STRAIGHT = 1e-9; /* 1/mm */
+
+typedef struct {
+    double along, bend, twist; /* greatest |q'|, |q''|, |q'''| */
+} trochia_sizes;
+
+static uint32_t parts_of(const trochia_segment *segment, const double *pool, uint32_t n) {
+    if (segment->kind != TROCHIA_ARC_SEGMENT)
+        return 1;
+    const double *c = pool + segment->data;
+    double length = segment->length, sweep = fabs(length * (c[4] + c[6 + 2 * n] * length));
+    double parts = fmax(ceil(sweep / ARC_PART), fmin(ceil(sweep / ARC_FINE), ceil(length / ARC_LONG)));
+    return (uint32_t)fmin(fmax(parts, 1.0), 4e9);
+}
+
+uint64_t trochia_scurve_count(const trochia_segment *segments, const double *pool, uint32_t axes, uint64_t count) {
+    uint64_t stretches = 0;
+    for (uint64_t k = 0; k < count; k++)
+        stretches += parts_of(&segments[k], pool, axes);
+    return stretches;
+}
+
+static double dot_row(const trochia_limits *limits, uint32_t row, const double *vector) {
+    if (row < limits->axes)
+        return vector[row];
+    double sum = 0.0;
+    for (uint32_t i = 0; i < limits->axes; i++)
+        sum += limits->matrix[row * limits->axes + i] * vector[i];
+    return sum;
+}
+
+static double norm(const double *vector, uint32_t n) {
+    double square = 0.0;
+    for (uint32_t i = 0; i < n; i++)
+        square += vector[i] * vector[i];
+    return sqrt(square);
+}
+
+/* Greatest |cos| over [from, to]. */
+static double greatest_cosine(double from, double to) {
+    const double half = 3.14159265358979323846;
+    if (floor(fmax(from, to) / half) != floor(fmin(from, to) / half))
+        return 1.0;
+    return fmax(fabs(cos(from)), fabs(cos(to)));
+}
+
+/* One row over part of an arc: of weights m on the plane's axes, |m| cos(phi - psi) is what it sees of the radius. */
+static trochia_sizes arc_row(const trochia_segment *segment, const double *c, uint32_t n, double m0, double m1,
+                             double straight, double from, double to) {
+    double weight = hypot(m0, m1), rate = c[5], twist = 2.0 * c[6 + 2 * n], length = segment->length;
+    trochia_sizes sizes = {fabs(straight), 0.0, 0.0};
+    if (weight == 0.0)
+        return sizes;
+    if (rate == 0.0 && twist == 0.0) {
+        const double quarter = 1.57079632679489661923;
+        double r = c[2], w = fabs(c[4]), psi = atan2(m1, m0);
+        double phi0 = c[3] + c[4] * from - psi, phi1 = c[3] + c[4] * to - psi;
+        double cosine = greatest_cosine(phi0, phi1), sine = greatest_cosine(phi0 - quarter, phi1 - quarter);
+        sizes.along += weight * r * w * sine;
+        sizes.bend = weight * r * w * w * cosine;
+        sizes.twist = weight * r * w * w * w * sine;
+        return sizes;
+    }
+    double r = fmax(c[2], c[2] + rate * length), w = fmax(fabs(c[4]), fabs(c[4] + twist * length));
+    rate = fabs(rate);
+    twist = fabs(twist);
+    sizes.along += weight * (r * w + rate);
+    sizes.bend = weight * (r * w * w + 2.0 * rate * w + r * twist);
+    sizes.twist = weight * (r * w * w * w + 3.0 * rate * w * w + 3.0 * r * w * twist + 3.0 * rate * twist);
+    return sizes;
+}
+
+static trochia_sizes cubic_row(double t0, double t1, double k0, double k1, double third, double length) {
+    trochia_sizes sizes = {fmax(fabs(t0), fabs(t1)) + length * length / 8.0 * fabs(third), fmax(fabs(k0), fabs(k1)),
+                           fabs(third)};
+    return sizes;
+}
+
+/* Raises a stretch by one row. */
+static void bind(trochia_stretch *stretch, trochia_sizes size, double velocity, double acceleration, double jerk) {
+    stretch->ceiling = trochia_smaller(stretch->ceiling, velocity / size.along);
+    stretch->along_a = trochia_larger(stretch->along_a, size.along / acceleration);
+    stretch->bend_a = trochia_larger(stretch->bend_a, size.bend / acceleration);
+    stretch->along_j = trochia_larger(stretch->along_j, size.along / jerk);
+    stretch->bend_j = trochia_larger(stretch->bend_j, 3.0 * size.bend / jerk);
+    stretch->twist_j = trochia_larger(stretch->twist_j, size.twist / jerk);
+}
+
+static void load_line(const double *direction, const trochia_limits *limits, trochia_stretch *stretch) {
+    for (uint32_t i = 0; i < limits->rows; i++) {
+        trochia_sizes size = {fabs(dot_row(limits, i, direction)), 0.0, 0.0};
+        bind(stretch, size, limits->velocity[i], limits->acceleration[i], limits->jerk[i]);
+    }
+    trochia_sizes size = {norm(direction, limits->linear), 0.0, 0.0};
+    bind(stretch, size, limits->path_velocity, limits->path_acceleration, limits->path_jerk);
+}
+
+/* Returns the greatest |x'| where that exceeds 1: the feed is that along the path. */
+static double load_arc(const trochia_segment *segment, const double *c, double from, double to,
+                       const trochia_limits *limits, trochia_stretch *stretch) {
+    uint32_t n = limits->axes;
+    const double *slope = c + 6 + n;
+    for (uint32_t i = 0; i < limits->rows; i++) {
+        double m0 = limits->matrix[i * n + segment->first], m1 = limits->matrix[i * n + segment->second];
+        trochia_sizes size = arc_row(segment, c, n, m0, m1, dot_row(limits, i, slope), from, to);
+        bind(stretch, size, limits->velocity[i], limits->acceleration[i], limits->jerk[i]);
+    }
+    double rise = norm(slope, limits->linear), r = fmax(c[2], c[2] + c[5] * segment->length);
+    double w = fmax(fabs(c[4]), fabs(c[4] + 2.0 * c[6 + 2 * n] * segment->length)), rate = fabs(c[5]);
+    double twist = fabs(2.0 * c[6 + 2 * n]), stretched = sqrt(r * w * r * w + rate * rate + rise * rise);
+    trochia_sizes size = {stretched, r * (w * w + twist) + 2.0 * rate * w,
+                          r * w * w * w + 3.0 * rate * w * w + 3.0 * r * w * twist + 3.0 * rate * twist};
+    bind(stretch, size, limits->path_velocity, limits->path_acceleration, limits->path_jerk);
+    return stretched;
+}
+
+static double load_cubic(const trochia_segment *segment, const double *pool, const trochia_limits *limits,
+                         trochia_stretch *stretch) {
+    double x[2][36], length = segment->length;
+    uint32_t n = limits->axes, linear = limits->linear;
+    trochia_segment_at(segment, pool, n, 0.0, 4, x[0]);
+    trochia_segment_at(segment, pool, n, length, 4, x[1]);
+    for (uint32_t i = 0; i < limits->rows; i++) {
+        trochia_sizes size =
+            cubic_row(dot_row(limits, i, x[0] + n), dot_row(limits, i, x[1] + n), dot_row(limits, i, x[0] + 2 * n),
+                      dot_row(limits, i, x[1] + 2 * n), dot_row(limits, i, x[0] + 3 * n), length);
+        bind(stretch, size, limits->velocity[i], limits->acceleration[i], limits->jerk[i]);
+    }
+    trochia_sizes size = cubic_row(norm(x[0] + n, linear), norm(x[1] + n, linear), norm(x[0] + 2 * n, linear),
+                                   norm(x[1] + 2 * n, linear), norm(x[0] + 3 * n, linear), length);
+    bind(stretch, size, limits->path_velocity, limits->path_acceleration, limits->path_jerk);
+    return size.along;
+}
+
+/* Whether x'' at the end of one segment is not that at the start of the next. */
+static int bend_jumps(const trochia_segment *segment, const double *pool, uint32_t n) {
+    double x[2][27], jump = 0.0, size = 0.0;
+    if (segment[0].kind == TROCHIA_LINE && segment[1].kind == TROCHIA_LINE)
+        return 0;
+    trochia_segment_at(&segment[0], pool, n, segment[0].length, 3, x[0]);
+    trochia_segment_at(&segment[1], pool, n, 0.0, 3, x[1]);
+    for (uint32_t i = 2 * n; i < 3 * n; i++) {
+        jump = fmax(jump, fabs(x[0][i] - x[1][i]));
+        size = fmax(size, fmax(fabs(x[0][i]), fabs(x[1][i])));
+    }
+    if (jump <= SAME_BEND * size + STRAIGHT)
+        return 0;
+    trochia_segment_at(&segment[1], pool, n, segment[1].length, 3, x[1]);
+    trochia_segment_at(&segment[0], pool, n, 0.0, 3, x[0]);
+    for (uint32_t i = 2 * n; i < 3 * n; i++)
+        size = fmax(size, fmax(fabs(x[0][i]), fabs(x[1][i])));
+    return jump > SAME_BEND * size + STRAIGHT;
+}
+
+static void load(const trochia_segment *segment, const double *pool, const trochia_limits *limits, uint32_t part,
+                 uint32_t parts, trochia_stretch *stretch) {
+    const double *c = pool + segment->data;
+    double step = segment->length / parts, stretched = 1.0;
+    *stretch = (trochia_stretch){.length = step, .ceiling = INFINITY};
+    if (segment->kind == TROCHIA_LINE)
+        load_line(c + limits->axes, limits, stretch);
+    else if (segment->kind == TROCHIA_ARC_SEGMENT)
+        stretched = load_arc(segment, c, step * part, step * (part + 1), limits, stretch);
+    else
+        stretched = load_cubic(segment, pool, limits, stretch);
+    double feed = segment->speed_limit / (stretched > 1.0 + 1e-12 ? stretched : 1.0);
+    stretch->over = segment->speed_limit < INFINITY && stretch->ceiling < segment->speed_limit * (1.0 - 1e-9);
+    stretch->ceiling = trochia_smaller(stretch->ceiling, feed);
+    if (stretch->bend_a > 0.0)
+        stretch->ceiling = trochia_smaller(stretch->ceiling, RESERVE / sqrt(stretch->bend_a));
+    if (stretch->twist_j > 0.0)
+        stretch->ceiling = trochia_smaller(stretch->ceiling, RESERVE / cbrt(stretch->twist_j));
+}
+
+void trochia_scurve_load(const trochia_segment *segments, const double *pool, uint64_t count,
+                         const trochia_limits *limits, trochia_stretch *stretches) {
+    for (uint64_t k = 0; k < count; k++) {
+        uint32_t parts = parts_of(&segments[k], pool, limits->axes);
+        for (uint32_t part = 0; part < parts; part++, stretches++) {
+            load(&segments[k], pool, limits, part, parts, stretches);
+            stretches->segment = (uint32_t)k;
+        }
+        stretches[-1].last = k + 1 == count || segments[k].stop || bend_jumps(&segments[k], pool, limits->axes);
+    }
+}

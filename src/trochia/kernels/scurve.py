@@ -1,0 +1,148 @@
+"""Face of ``core/host/scurve.h``: speed along a path with limited jerk.
+
+In: segments and coefficients, limits, rests.  Out: knots (``KNOT``); phases, states, times and peaks from them.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from trochia.kernels.layout import PHASE, SEGMENT, dtype_of, ffi, lib, pointer
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+KNOT = dtype_of("trochia_knot")
+STRETCH = dtype_of("trochia_stretch")
+_ROWS = 18
+_BLOCK = 65536
+
+
+class Ramps:
+    """What the passes over one path came to: its knots, and readings of them; arrays stay alive with it.
+
+    Parameters
+    ----------
+    segments, pool
+        The path, already checked; at least one segment.
+    matrix
+        Rows of limited quantities over the axes (rows, axes), the unit matrix first.
+    velocity, acceleration, jerk
+        Limit of each row (rows,).
+    caps
+        Greatest velocity, acceleration and jerk of the vector X Y Z; infinity where there is none.
+    linear
+        Number of leading columns that are X, Y or Z.
+    rests
+        Segment before which motion rests (rests,), rising, and for how long [s] (rests,).
+    """
+
+    def __init__(
+        self,
+        segments: NDArray[np.void],
+        pool: NDArray[np.float64],
+        *,
+        matrix: NDArray[np.float64],
+        velocity: NDArray[np.float64],
+        acceleration: NDArray[np.float64],
+        jerk: NDArray[np.float64],
+        caps: tuple[float, float, float],
+        linear: int,
+        rests: tuple[NDArray[np.uint64], NDArray[np.float64]],
+    ) -> None:
+        rows, axes = matrix.shape
+        if rows > _ROWS or not np.array_equal(matrix[:axes], np.eye(axes)):
+            raise ValueError(f"limits need the unit matrix first and at most {_ROWS} rows")
+        if not np.isfinite(jerk[:axes]).all():
+            raise ValueError("every axis needs a jerk limit")
+        if segments.dtype != SEGMENT or not len(segments):
+            raise ValueError("a path is SEGMENT rows, at least one")
+        self._segments, self._pool = segments, pool
+        self._limits = ffi.new("trochia_limits *")
+        self._limits.axes, self._limits.rows, self._limits.linear = axes, rows, linear
+        self._limits.matrix = list(matrix.ravel()) + [0.0] * (162 - matrix.size)
+        for name, values in (("velocity", velocity), ("acceleration", acceleration), ("jerk", jerk)):
+            if values.shape != (rows,) or not (values > 0).all():
+                raise ValueError(f"every row needs a {name} above zero")
+            setattr(self._limits, name, list(values) + [1.0] * (_ROWS - rows))
+        self._limits.path_velocity, self._limits.path_acceleration, self._limits.path_jerk = caps
+        self._plan(np.ascontiguousarray(rests[0]), np.ascontiguousarray(rests[1]))
+
+    def _plan(self, where: NDArray[np.uint64], seconds: NDArray[np.float64]) -> None:
+        if where.shape != seconds.shape or (np.diff(where.astype(np.int64)) < 0).any():
+            raise ValueError("rests need a rising segment and a time each")
+        count = len(self._segments)
+        stretches = np.empty(lib.trochia_scurve_count(*self._path(), self._limits.axes, count), dtype=STRETCH)
+        rows = pointer(stretches, "trochia_stretch *")
+        lib.trochia_scurve_load(*self._path(), count, self._limits, rows)
+        self.knots = np.empty(7 * len(stretches) + len(where) + 1, dtype=KNOT)
+        where = where.astype(np.uint64)
+        made = lib.trochia_scurve(
+            rows, len(stretches), pointer(where, "uint64_t *"), pointer(seconds, "double *"), len(where), self._knot()
+        )
+        self.knots.resize(made, refcheck=False)
+        self.knots.setflags(write=False)
+        self._starts = np.empty(count + 1)
+        lib.trochia_scurve_starts(rows, len(stretches), pointer(self._starts, "double *"))
+        self.over = np.zeros(count, dtype=np.bool_)
+        self.over[stretches["segment"][stretches["over"] != 0]] = True
+
+    def _path(self) -> tuple[Any, Any]:
+        return pointer(self._segments, "trochia_segment *"), pointer(self._pool, "double *")
+
+    def _knot(self) -> Any:  # noqa: ANN401 - a cffi pointer has no Python type
+        return pointer(self.knots, "trochia_knot *")
+
+    @property
+    def duration(self) -> float:
+        """Whole time, rests included [s]."""
+        return float(self.knots["t"][-1])
+
+    def phases(self, size: int = _BLOCK) -> Iterator[NDArray[np.void]]:
+        """Yield phases in order, at most ``size`` a block (PHASE,)."""
+        if size < 1:
+            raise ValueError(f"a block of phases needs room for one, not {size}")
+        cursor = ffi.new("trochia_knot_cursor *")
+        while True:
+            block = np.empty(size, dtype=PHASE)
+            made = lib.trochia_scurve_phases(
+                pointer(self._starts, "double *"), len(self._segments), self._knot(), len(self.knots), cursor,
+                pointer(block, "trochia_phase *"), size,
+            )  # fmt: skip
+            if not made:
+                return
+            yield block[:made]
+
+    def states(self, times: NDArray[np.float64]) -> NDArray[np.void]:
+        """Return the state at each time [s], clamped to the ends (times,) of PHASE."""
+        held = np.ascontiguousarray(times, dtype=np.float64)
+        out = np.empty(held.shape, dtype=PHASE)
+        lib.trochia_scurve_states(
+            pointer(self._starts, "double *"), len(self._segments), self._knot(), len(self.knots),
+            pointer(held, "double *"), held.size, pointer(out, "trochia_phase *"),
+        )  # fmt: skip
+        return out
+
+    def move_times(self, moves: int) -> NDArray[np.float64]:
+        """Return the time each of the program's moves takes (moves,) [s]; a blend counts to the move it enters."""
+        if int(self._segments["move"].max()) >= moves:
+            raise ValueError("the path has more moves than the program")
+        out = np.zeros(moves)
+        for block in self.phases():
+            moving = block[block["flags"] == 0]
+            out += np.bincount(self._segments["move"][moving["segment"]], moving["duration"], moves)
+        return out
+
+    def peaks(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """Return the greatest |velocity|, |acceleration| and |jerk| of each limited row, (rows,) each."""
+        found = np.zeros((3, self._limits.rows))
+        for block in self.phases():
+            lib.trochia_scurve_peaks(
+                *self._path(), self._limits, pointer(block, "trochia_phase *"), len(block),
+                *(pointer(row, "double *") for row in found),
+            )  # fmt: skip
+        return found[0], found[1], found[2]
