@@ -28,5 +28,6 @@ def test_every_code_has_a_case():
         if not (case / "expected.error").exists()
     )
     words = set(text.replace("\n", " ").split())
-    missing = [code.name for code in (*G_CODES.values(), *M_CODES.values()) if code.name not in words]
+    codes = (code for code in (*G_CODES.values(), *M_CODES.values()) if code.group != "user code")
+    missing = [code.name for code in codes if code.name not in words]
     assert not missing

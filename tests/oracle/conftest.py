@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 import subprocess
@@ -31,8 +32,11 @@ class Run:
     why: str
 
 
-def reference(text: bytes, variables: str | None = None) -> Run:
-    """Return what ``rs274 -g`` says; it rewrites its variable file, so it runs in a directory of its own."""
+def reference(text: bytes, variables: str | None = None, tools: str | None = None) -> Run:
+    """Return what ``rs274 -g`` says.
+
+    It rewrites its variable file and keeps its tools in a file in HOME, so it runs with a directory of its own as both.
+    """
     assert RS274 is not None
     with tempfile.TemporaryDirectory() as folder:
         Path(folder, "program.ngc").write_bytes(text)
@@ -40,9 +44,17 @@ def reference(text: bytes, variables: str | None = None) -> Run:
         if variables is not None:
             Path(folder, "work.var").write_text(variables, encoding="ascii")
             extra = ["-v", "work.var"]
+        if tools is not None:
+            Path(folder, "tool.tbl").write_text(tools, encoding="ascii")
+            extra += ["-t", "tool.tbl"]
         for _ in range(3):  # once in some thousand runs it dies without a word
             done = subprocess.run(
-                [RS274, "-g", *extra, "program.ngc"], cwd=folder, capture_output=True, timeout=20, check=False
+                [RS274, "-g", *extra, "program.ngc"],
+                cwd=folder,
+                env={**os.environ, "HOME": folder},
+                capture_output=True,
+                timeout=20,
+                check=False,
             )
             said = [line for line in done.stderr.decode("latin-1").split("\n") if line != "executing"]
             if done.returncode == 0 or len(said) > 1:
@@ -72,9 +84,11 @@ def alike(left: str, right: str) -> bool:
     return all(abs(float(a) - float(b)) <= TOLERANCE for a, b in pairs)
 
 
-def compare(text: bytes, *, variables: str | None = None, work: WorkState | None = None) -> None:
+def compare(
+    text: bytes, *, variables: str | None = None, tools: str | None = None, work: WorkState | None = None
+) -> None:
     """Assert that we accept or reject a program as the reference does, at the same line, with the same output."""
-    judge = reference(text, variables)
+    judge = reference(text, variables, tools)
     for fast in (False, True):
         run = ours(text, fast=fast, work=work or WorkState())
         for number, (theirs, mine) in enumerate(zip(judge.lines, run.lines, strict=False)):

@@ -15,11 +15,20 @@ from trochia.program.actions import (
     Dwell,
     End,
     Message,
+    Orient,
+    Output,
+    Override,
     Pause,
     Spindle,
+    SurfaceSpeed,
+    SynchronisedOutput,
     ToolChange,
+    ToolNumber,
+    UserCode,
+    WaitInput,
 )
 from trochia.program.modes import AXES, MoveKind, PathMode, Plane, TimeLaw
+from trochia.program.tools import NO_TOOL, Tool
 from trochia.program.work import SYSTEMS, WorkState
 
 if TYPE_CHECKING:
@@ -29,6 +38,7 @@ if TYPE_CHECKING:
 __all__ = [
     "AXES",
     "MOVE",
+    "NO_TOOL",
     "SYSTEMS",
     "Action",
     "Coolant",
@@ -36,13 +46,22 @@ __all__ = [
     "End",
     "Message",
     "MoveKind",
+    "Orient",
+    "Output",
+    "Override",
     "PathMode",
     "Pause",
     "Plane",
     "Program",
     "Spindle",
+    "SurfaceSpeed",
+    "SynchronisedOutput",
     "TimeLaw",
+    "Tool",
     "ToolChange",
+    "ToolNumber",
+    "UserCode",
+    "WaitInput",
     "WorkState",
 ]
 

@@ -3,11 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Action:
-    """Something that is not motion; ``line`` is its source line.  Motion is at rest while any of these acts."""
+    """Something that is not motion; ``line`` is its source line.
+
+    ``at_rest`` says whether motion comes to rest before it acts; where it does not, the action takes effect as the
+    next move begins.
+    """
+
+    at_rest: ClassVar[bool] = True
 
     at: int
     line: int
@@ -22,10 +29,34 @@ class Dwell(Action):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Spindle(Action):
-    """Spindle or beam: direction +1 clockwise (M3), -1 counter-clockwise (M4), 0 off (M5); speed as S gave it (rpm)."""
+    """Spindle or beam: direction +1 clockwise (M3), -1 counter-clockwise (M4), 0 off (M5); speed as S gave it (rpm).
+
+    It stands where the direction changes; another speed while it turns is the moves' power, and stops nothing.
+    """
 
     direction: int
     speed: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SurfaceSpeed(Action):
+    """Constant surface speed (G96): S is the speed of the cut; ``most`` (rpm, None: no bound).  False: S is rpm."""
+
+    at_rest: ClassVar[bool] = False
+    on: bool
+    most: float | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Orient(Action):
+    """Turn the spindle to an angle (deg) and hold it there (M19).
+
+    ``way``: 0 the shorter way, 1 clockwise, 2 counter-clockwise; ``timeout`` (s), None: do not wait for it.
+    """
+
+    angle: float | None
+    way: int
+    timeout: float | None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,8 +75,66 @@ class ToolChange(Action):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class ToolNumber(Action):
+    """Take note that this tool is in the spindle (M61); nothing moves."""
+
+    at_rest: ClassVar[bool] = False
+    tool: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Output(Action):
+    """Set a digital (bool) or analogue (float) output, at rest and at once (M64, M65, M68)."""
+
+    index: int
+    value: bool | float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SynchronisedOutput(Action):
+    """Set a digital (bool) or analogue (float) output as the next move begins (M62, M63, M67)."""
+
+    at_rest: ClassVar[bool] = False
+    index: int
+    value: bool | float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WaitInput(Action):
+    """Read an input (M66), or wait for it.
+
+    ``wait``: 0 read it now, 1 rise, 2 fall, 3 high, 4 low; ``timeout`` (s).
+    """
+
+    index: int
+    analogue: bool
+    wait: int
+    timeout: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Override(Action):
+    """Let the operator's override ``kind`` act or not: ``feed``, ``speed``, ``adaptive`` or ``hold`` (M48 to M53)."""
+
+    at_rest: ClassVar[bool] = False
+    kind: str
+    on: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class UserCode(Action):
+    """A code of the user's own (M100 to M199) with its P and Q; None: not given."""
+
+    number: int
+    p: float | None
+    q: float | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Message(Action):
-    """Text for the operator."""
+    """Text for the operator; motion goes on."""
+
+    at_rest: ClassVar[bool] = False
 
     text: str
 

@@ -1,12 +1,16 @@
-"""What a program finds set up on the machine: offsets, and the points it can return to."""
+"""What a program finds set up on the machine: offsets, tools, variables, and the points it can return to."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 from trochia.program.modes import AXES
 
-Offsets = tuple[float, ...]  #: nine axes, in the order of ``AXES`` [mm, degree]
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from trochia.program.tools import Offsets, Tool
 
 SYSTEMS = ("G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3")  #: coordinate systems 1 to 9
 _NONE: Offsets = (0.0,) * 9
@@ -28,6 +32,18 @@ class WorkState:
         The G92 offset, and whether it applies.
     g28, g30
         Where G28 and G30 go (9).
+    tools
+        The tool table, in its order; None: no table, and every tool may be called, without length or diameter.
+    tool
+        Number of the tool in the spindle; 0: none.
+    tool_offset
+        Tool offset in force (9).
+    variables
+        Numbered variables that outlast a program, {number: value}; offsets and points are not among them.
+    unit
+        Length in which variables tell points and offsets: that of the machine [mm].
+    user_codes
+        M100 to M199 may be called.
     """
 
     systems: tuple[Offsets, ...] = (_NONE,) * 9
@@ -37,6 +53,12 @@ class WorkState:
     g92_on: bool = False
     g28: Offsets = _NONE
     g30: Offsets = _NONE
+    tools: tuple[Tool, ...] | None = None
+    tool: int = 0
+    tool_offset: Offsets = _NONE
+    variables: Mapping[int, float] = field(default_factory=dict[int, float])
+    unit: float = 1.0
+    user_codes: bool = False
 
     def __post_init__(self) -> None:
         if not 1 <= self.active <= len(SYSTEMS):
@@ -44,7 +66,7 @@ class WorkState:
         if len(self.systems) != len(SYSTEMS) or len(self.rotations) != len(SYSTEMS):
             raise ValueError(f"systems and rotations have {len(SYSTEMS)} entries each")
         for name, offsets in (*zip(SYSTEMS, self.systems, strict=True), ("g92", self.g92), ("g28", self.g28),
-                              ("g30", self.g30)):  # fmt: skip
+                              ("g30", self.g30), ("tool_offset", self.tool_offset)):  # fmt: skip
             if len(offsets) != len(_NONE):
                 raise ValueError(f"{name} has {len(_NONE)} axes, not {len(offsets)}")
 

@@ -21,9 +21,10 @@ if TYPE_CHECKING:
 _Error = TypeVar("_Error", bound=ProgramError)
 
 AXIS = {letter: column for column, letter in enumerate("xyzabcuvw")}
-_VALUES = frozenset("dehijklpqr") | frozenset(WORDS) | frozenset(AXIS)
+_VALUES = frozenset("dehijklpqr$") | frozenset(WORDS) | frozenset(AXIS)
 _NOT_NEGATIVE = frozenset("fst")
 _WHOLE = frozenset("l")
+_USER_CODES = 1000  # tenths: from M100 on
 
 
 @dataclass(slots=True)
@@ -44,6 +45,8 @@ class Block:
         The motion code that acts on this line, or None; set by the check against the modal state.
     in_machine
         Targets are machine coordinates (G53).
+    dropped
+        What has not acted yet does not act any more (M72).
     where
         Index of each word in the compact line, by its letter or the name of its code.
     """
@@ -58,6 +61,7 @@ class Block:
     acting: list[WordCode] = field(default_factory=list["WordCode"])
     motion: Code | None = None
     in_machine: bool = False
+    dropped: bool = False
 
     @property
     def mover(self) -> str:
@@ -153,8 +157,9 @@ def _m_code(block: Block, word: Word) -> Code:
     key = as_integer(value)
     code = None if key is None else M_CODES.get(key * 10)
     if code is None:
+        known = " ".join(code.name for key, code in M_CODES.items() if key < _USER_CODES)
         raise block.place.fault(UnknownCodeError, f"M{value:g} is not known", at,
-                                hint="Known are " + " ".join(code.name for code in M_CODES.values()) + ".")  # fmt: skip
+                                hint=f"Known are {known}.")  # fmt: skip
     if sum(code.name[0] == "M" for code in block.codes) == MOST_M_CODES:
         raise block.place.fault(ModalConflictError, f"more than {MOST_M_CODES} M codes on one line", at,
                                 hint="Use two lines.")  # fmt: skip

@@ -23,13 +23,21 @@ from trochia.program import (
     End,
     Message,
     MoveKind,
+    Orient,
+    Output,
+    Override,
     PathMode,
     Pause,
     Plane,
     Program,
     Spindle,
+    SurfaceSpeed,
+    SynchronisedOutput,
     TimeLaw,
     ToolChange,
+    ToolNumber,
+    UserCode,
+    WaitInput,
 )
 from trochia.program.moves import MOVE
 
@@ -38,6 +46,7 @@ if TYPE_CHECKING:
 
     from trochia.kernels.gcode import Rows
     from trochia.languages.gcode.sink import Position
+    from trochia.program import Tool
 
     Moves = NDArray[Any]
 
@@ -69,9 +78,11 @@ class Builder:
         self._actions: list[Action] = []
         self._placement = new_placement()
         self._placement.position = list(start)
+        self._origin = [0.0] * len(start)
+        self._tool = [0.0] * len(start)
         self._direction = 0
         self._speed: float | None = None
-        self._mist = self._flood = False
+        self._surface = self._mist = self._flood = False
         self._kept_path = (PathMode.BLEND_DEFAULT, [0.0, 0.0])
 
     def program(self, lines: int) -> Program:
@@ -159,7 +170,9 @@ class Builder:
         self._flush()
         scale = INCH if inch else 1.0
         placement = self._placement
-        placement.origin = scaled(placement.origin, placement.scale / scale)
+        self._origin = scaled(self._origin, placement.scale / scale)
+        self._tool = scaled(self._tool, placement.scale / scale)
+        self._set_base()
         placement.shift = scaled(placement.shift, placement.scale / scale)
         placement.scale = scale
 
@@ -172,7 +185,12 @@ class Builder:
         """Use another origin."""
         del system
         self._flush()
-        self._placement.origin = list(offset)
+        self._origin = list(offset)
+        self._set_base()
+
+    def _set_base(self) -> None:
+        """Let the origin and the tool's offset, which a rotation does not turn, act together."""
+        self._placement.origin = [origin + tool for origin, tool in zip(self._origin, self._tool, strict=True)]
 
     def set_g92_offset(self, offset: Position) -> None:
         """Use another shift."""
@@ -185,7 +203,10 @@ class Builder:
         self._placement.cosine, self._placement.sine = cos(radians(degrees)), sin(radians(degrees))
 
     def use_tool_length_offset(self, offset: Position) -> None:
-        """Nothing: the language has no tool lengths yet, so the offset is zero."""
+        """Use another tool offset."""
+        self._flush()
+        self._tool = list(offset)
+        self._set_base()
 
     def set_feed_mode(self, law: TimeLaw) -> None:
         """Let F mean something else."""
@@ -238,35 +259,73 @@ class Builder:
         """Wait."""
         self._actions.append(Dwell(at=self._at, line=self.line, seconds=seconds))
 
-    def set_spindle_mode(self) -> None:
-        """Nothing: S is the speed, as it always is."""
+    def set_spindle_mode(self, most: float | None, *, on: bool) -> None:
+        """Let S mean something else; no action where it goes on to mean the same."""
+        if on or self._surface:
+            self._actions.append(SurfaceSpeed(at=self._at, line=self.line, on=on, most=most))
+        self._surface = on
 
     def set_spindle_speed(self, speed: float) -> None:
-        """Use another speed or power."""
-        self._turn_spindle(self._direction, speed)
+        """Use another speed or power, which the moves carry."""
+        self._speed = speed
 
     def start_spindle(self, direction: int) -> None:
         """Start the spindle or beam."""
-        self._turn_spindle(direction, self._speed)
+        self._turn_spindle(direction)
 
     def stop_spindle(self) -> None:
         """Stop the spindle or beam."""
-        self._turn_spindle(0, self._speed)
+        self._turn_spindle(0)
 
-    def _turn_spindle(self, direction: int, speed: float | None) -> None:
-        """Keep what is new; an action stands only where what turns changes."""
-        if direction != self._direction or (direction and speed != self._speed):
-            self._actions.append(Spindle(at=self._at, line=self.line, direction=direction, speed=speed or 0.0))
-        self._direction, self._speed = direction, speed
+    def _turn_spindle(self, direction: int) -> None:
+        """Keep the direction; an action stands only where it changes."""
+        if direction != self._direction:
+            speed = self._speed or 0.0
+            self._actions.append(Spindle(at=self._at, line=self.line, direction=direction, speed=speed))
+        self._direction = direction
+
+    def wait_orient(self, seconds: float) -> None:
+        """Wait for the angle that was asked last."""
+        self._actions.append(Orient(at=self._at, line=self.line, angle=None, way=0, timeout=seconds))
+
+    def adaptive_feed(self, *, on: bool) -> None:
+        """Let the machine change the feed, or not."""
+        self._override("adaptive", on=on)
+
+    def feed_hold(self, *, on: bool) -> None:
+        """Let the feed-hold switch act, or not."""
+        self._override("hold", on=on)
+
+    def _override(self, kind: str, *, on: bool) -> None:
+        self._actions.append(Override(at=self._at, line=self.line, kind=kind, on=on))
+
+    def set_output(self, index: int, value: bool | float, *, synchronised: bool) -> None:  # noqa: FBT001 - a value
+        """Set an output."""
+        kind = SynchronisedOutput if synchronised else Output
+        self._actions.append(kind(at=self._at, line=self.line, index=index, value=value))
+
+    def wait_input(self, index: int, *, analogue: bool, wait: int, timeout: float) -> None:
+        """Wait for an input."""
+        self._actions.append(
+            WaitInput(at=self._at, line=self.line, index=index, analogue=analogue, wait=wait, timeout=timeout)
+        )
+
+    def user_code(self, number: int, p: float | None, q: float | None) -> None:
+        """Call a code of the machine's own."""
+        self._actions.append(UserCode(at=self._at, line=self.line, number=number, p=p, q=q))
 
     def orient_spindle(self, degrees: float, direction: int) -> None:
-        """Nothing: no machine here turns its spindle to an angle."""
+        """Turn the spindle to an angle, where it stays."""
+        self._direction = 0
+        self._actions.append(Orient(at=self._at, line=self.line, angle=degrees, way=direction, timeout=None))
 
     def feed_override(self, *, on: bool) -> None:
-        """Nothing: what the operator may change does not change the program."""
+        """Let the operator change the feed, or not."""
+        self._override("feed", on=on)
 
     def speed_override(self, *, on: bool) -> None:
-        """Nothing: what the operator may change does not change the program."""
+        """Let the operator change the spindle speed, or not."""
+        self._override("speed", on=on)
 
     def mist(self, *, on: bool) -> None:
         """Switch mist."""
@@ -287,8 +346,20 @@ class Builder:
     def start_change(self) -> None:
         """Nothing: the change follows."""
 
-    def change_tool(self, tool: int) -> None:
+    def change_tool_number(self, slot: int, tool: int) -> None:
+        """Take note of the tool in the spindle."""
+        del slot
+        self._actions.append(ToolNumber(at=self._at, line=self.line, tool=tool))
+
+    def set_tool_table_entry(self, slot: int, tool: Tool) -> None:
+        """Nothing: moves are made with the offset in force."""
+
+    def reload_tools(self) -> None:
+        """Nothing: the table is what it was when the program began."""
+
+    def change_tool(self, slot: int, tool: int) -> None:
         """Change the tool."""
+        del slot
         self._actions.append(ToolChange(at=self._at, line=self.line, tool=tool))
 
     def comment(self, text: str) -> None:
@@ -297,6 +368,19 @@ class Builder:
     def message(self, text: str) -> None:
         """Tell the operator."""
         self._actions.append(Message(at=self._at, line=self.line, text=text))
+
+    def say(self, text: str) -> None:
+        """Tell the operator."""
+        self.message(text)
+
+    def open_log(self, name: str, *, append: bool) -> None:
+        """Nothing: a program that is only read writes no file."""
+
+    def log(self, text: str) -> None:
+        """Nothing: a program that is only read writes no file."""
+
+    def close_log(self) -> None:
+        """Nothing: no log is open."""
 
     def program_stop(self, *, optional: bool) -> None:
         """Wait for the operator."""

@@ -9,7 +9,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from trochia.kernels.gcode import COMMENT_ROW, FEED_ROW
+from trochia.languages.gcode.frames import scaled
 from trochia.languages.gcode.interpreter import interpret
+from trochia.languages.gcode.state import INCH
 from trochia.program.modes import MoveKind, PathMode, Plane, TimeLaw
 
 if TYPE_CHECKING:
@@ -19,6 +21,7 @@ if TYPE_CHECKING:
 
     from trochia.kernels.gcode import Rows
     from trochia.languages.gcode.sink import Position
+    from trochia.program import Tool
 
 _SIX = "(%.4f, %.4f, %.4f, %.4f, %.4f, %.4f)\n"
 _ARC = "ARC_FEED(%.4f, %.4f, %.4f, %.4f, %d, %.4f, %.4f, %.4f, %.4f)\n"
@@ -29,6 +32,7 @@ _MODES = {
     PathMode.EXACT_PATH: "EXACT_PATH",
     PathMode.EXACT_STOP: "EXACT_STOP",
 }
+_NO_BOUND = 1e30  # rpm, of a constant surface speed without D
 _TOOL_OFFSET = "USE_TOOL_LENGTH_OFFSET(%.4f %.4f %.4f, %.4f %.4f %.4f, %.4f %.4f %.4f)\n"
 
 
@@ -157,9 +161,9 @@ class Canon:
         """Print what the feed refers to."""
         self._print("SET_FEED_REFERENCE(CANON_XYZ)\n")
 
-    def set_spindle_mode(self) -> None:
-        """Print that S is the speed itself."""
-        self._print("SET_SPINDLE_MODE(0 0.0000)\n")
+    def set_spindle_mode(self, most: float | None, *, on: bool) -> None:
+        """Print what S is: 0, or the greatest spindle speed where it is the speed of the cut."""
+        self._print(f"SET_SPINDLE_MODE(0 {(_NO_BOUND if most is None else most) if on else 0.0:.4f})\n")
 
     def set_spindle_speed(self, speed: float) -> None:
         """Print the spindle speed."""
@@ -177,6 +181,10 @@ class Canon:
         """Print the spindle's turn to an angle."""
         self._print(f"ORIENT_SPINDLE(0, {degrees:.4f}, {direction})\n")
 
+    def wait_orient(self, seconds: float) -> None:
+        """Print the wait for the spindle's angle."""
+        self._print(f"SPINDLE.0.WAIT_ORIENT_COMPLETE({seconds:.4f})\n")
+
     def feed_override(self, *, on: bool) -> None:
         """Print whether the operator may change the feed."""
         self._print(f"{'ENABLE' if on else 'DISABLE'}_FEED_OVERRIDE()\n")
@@ -184,6 +192,29 @@ class Canon:
     def speed_override(self, *, on: bool) -> None:
         """Print whether the operator may change the spindle speed."""
         self._print(f"{'ENABLE' if on else 'DISABLE'}_SPEED_OVERRIDE(0)\n")
+
+    def adaptive_feed(self, *, on: bool) -> None:
+        """Print whether the machine may change the feed."""
+        self._print(f"{'EN' if on else 'DIS'}ABLE_ADAPTIVE_FEED()\n")
+
+    def feed_hold(self, *, on: bool) -> None:
+        """Print whether the feed-hold switch acts."""
+        self._print(f"{'EN' if on else 'DIS'}ABLE_FEED_HOLD()\n")
+
+    def set_output(self, index: int, value: bool | float, *, synchronised: bool) -> None:  # noqa: FBT001 - a value
+        """Print an output."""
+        kind = "MOTION" if synchronised else "AUX"
+        if isinstance(value, bool):
+            self._print(f"{'SET' if value else 'CLEAR'}_{kind}_OUTPUT_BIT({index})\n")
+        else:
+            self._print(f"SET_{kind}_OUTPUT_VALUE({index},{value:.6f})\n")
+
+    def wait_input(self, index: int, *, analogue: bool, wait: int, timeout: float) -> None:
+        """Nothing: the reference does not print it."""
+
+    def user_code(self, number: int, p: float | None, q: float | None) -> None:
+        """Print a code of the machine's own: its P and Q, -1 where not given, as the reference hands them over."""
+        self._print(f"USER_DEFINED_FUNCTION({number}, {-1 if p is None else p:.4f}, {-1 if q is None else q:.4f})\n")
 
     def mist(self, *, on: bool) -> None:
         """Print mist coolant."""
@@ -201,9 +232,25 @@ class Canon:
         """Print the beginning of a tool change."""
         self._print("START_CHANGE()\n")
 
-    def change_tool(self, tool: int) -> None:
-        """Print the tool change."""
-        self._print(f"CHANGE_TOOL({tool})\n")
+    def change_tool(self, slot: int, tool: int) -> None:
+        """Print the tool change, with the tool's place in the table."""
+        del tool
+        self._print(f"CHANGE_TOOL({slot})\n")
+
+    def change_tool_number(self, slot: int, tool: int) -> None:
+        """Print the tool in the spindle, by its place in the table."""
+        del tool
+        self._print(f"CHANGE_TOOL_NUMBER({slot})\n")
+
+    def set_tool_table_entry(self, slot: int, tool: Tool) -> None:
+        """Print a tool of the table, its offset in inches, as the reference alone keeps it."""
+        offset = " ".join(f"{value:.4f}" for value in scaled(tool.offset, 1 / INCH))
+        angles = f"{tool.front:.4f}, {tool.back:.4f}, {tool.orientation}"
+        self._print(f"SET_TOOL_TABLE_ENTRY({slot}, {tool.number}, {offset}, {angles})\n")
+
+    def reload_tools(self) -> None:
+        """Print that the tool table is read anew."""
+        self._print("RELOAD_TOOLDATA()\n")
 
     def comment(self, text: str) -> None:
         """Print a comment."""
@@ -212,6 +259,22 @@ class Canon:
     def message(self, text: str) -> None:
         """Print a message."""
         self._print(f'MESSAGE("{text}")\n')
+
+    def say(self, text: str) -> None:
+        """Print what the program prints, as it is."""
+        self._print(f"{text}\n")
+
+    def open_log(self, name: str, *, append: bool) -> None:
+        """Print that a log is opened; nothing is written to it."""
+        self._print(f'LOG{"APPEND" if append else "OPEN"}("{name}")\n')
+
+    def log(self, text: str) -> None:
+        """Print a line of the log."""
+        self._print(f'LOG("{text}")\n')
+
+    def close_log(self) -> None:
+        """Print that the log is closed."""
+        self._print("LOGCLOSE()\n")
 
     def program_stop(self, *, optional: bool) -> None:
         """Print a stop."""

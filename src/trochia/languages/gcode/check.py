@@ -55,7 +55,7 @@ def _motion_of(block: Block, state: State) -> Code | None:
             raise block.fault(ModalConflictError, f"{explicit.name} and {taker.name} both use the axis words",
                               explicit.name, hint="Use two lines.")  # fmt: skip
         return explicit
-    if taker is not None:
+    if taker is not None or "G43.1" in block.where:
         return None
     if block.axes:
         return _modal_motion(block, state, explicit)
@@ -88,8 +88,9 @@ def _check_non_modal(block: Block, state: State, other: Code) -> None:
     """Check what G4, G53 and G92 ask of their line."""
     if other.name == "G4":
         _check_dwell(block)
-    elif other.name == "G92" and not block.axes:
-        raise block.fault(ParseError, "G92 has no axis word", "G92", hint="Write the axes to set, like G92 X0.")
+    elif other.name in ("G92", "G52") and not block.axes:
+        raise block.fault(ParseError, f"{other.name} has no axis word", other.name,
+                          hint=f"Write the axes to set, like {other.name} X0.")  # fmt: skip
     elif other.name == "G53":
         _check_machine_coordinates(block, state)
 

@@ -1,7 +1,8 @@
 """Machine coordinates to program coordinates and back.
 
-machine = turn(program + shift) + origin, where ``turn`` turns X and Y about Z by the system's rotation.  Program side
-in program units, machine side in mm; rotary axes in degrees on both.
+machine = turn(program + shift) + origin + tool, where ``turn`` turns X and Y about Z by the system's rotation, and
+``tool`` is the tool offset, which is not turned.  Program side in program units, machine side in mm; rotary axes in
+degrees on both.
 """
 
 from __future__ import annotations
@@ -44,14 +45,19 @@ def turned(values: list[float], degrees: float) -> list[float]:
     return values
 
 
+def base_of(state: State) -> list[float]:
+    """Return where the turned program coordinates begin (9), machine coordinates in program units."""
+    return [origin + tool for origin, tool in zip(state.origin, state.tool_offset, strict=True)]
+
+
 def to_program(state: State, machine: Sequence[float]) -> list[float]:
     """Return the program coordinates of a machine point (9) [mm, degree]."""
     point = in_program_units(state, machine)
-    point = turned([value - origin for value, origin in zip(point, state.origin, strict=True)], -state.rotation)
+    point = turned([value - base for value, base in zip(point, base_of(state), strict=True)], -state.rotation)
     return [value - shift for value, shift in zip(point, state.shift, strict=True)]
 
 
 def to_machine(state: State, point: Sequence[float]) -> list[float]:
     """Return the machine coordinates [mm, degree] of a program point (9)."""
     values = turned([value + shift for value, shift in zip(point, state.shift, strict=True)], state.rotation)
-    return in_mm(state, [value + origin for value, origin in zip(values, state.origin, strict=True)])
+    return in_mm(state, [value + base for value, base in zip(values, base_of(state), strict=True)])

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
     from trochia.kernels.gcode import Rows
-    from trochia.program import PathMode, Plane, TimeLaw
+    from trochia.program import PathMode, Plane, TimeLaw, Tool
 
 Position = Sequence[float]
 
@@ -79,8 +79,8 @@ class Sink(Protocol):
     def set_feed_reference(self) -> None:
         """Say that feeds refer to the part."""
 
-    def set_spindle_mode(self) -> None:
-        """Say that S is the spindle speed itself."""
+    def set_spindle_mode(self, most: float | None, *, on: bool) -> None:
+        """Say whether S is the speed of the cut, with the greatest spindle speed [rpm] (None: no bound)."""
 
     def set_spindle_speed(self, speed: float) -> None:
         """Set the spindle speed [rpm], or power of the beam."""
@@ -94,11 +94,29 @@ class Sink(Protocol):
     def orient_spindle(self, degrees: float, direction: int) -> None:
         """Turn the spindle to an angle: 0 the shorter way, 1 clockwise, 2 counter-clockwise."""
 
+    def wait_orient(self, seconds: float) -> None:
+        """Wait until the spindle has its angle, at most so long [s]."""
+
     def feed_override(self, *, on: bool) -> None:
         """Let the operator change the feed, or not."""
 
     def speed_override(self, *, on: bool) -> None:
         """Let the operator change the spindle speed, or not."""
+
+    def adaptive_feed(self, *, on: bool) -> None:
+        """Let the machine change the feed, or not."""
+
+    def feed_hold(self, *, on: bool) -> None:
+        """Let the feed-hold switch act, or not."""
+
+    def set_output(self, index: int, value: bool | float, *, synchronised: bool) -> None:  # noqa: FBT001 - a value
+        """Set a digital (bool) or analogue (float) output, as the next move begins or at once."""
+
+    def wait_input(self, index: int, *, analogue: bool, wait: int, timeout: float) -> None:
+        """Read an input (wait 0), or wait for a rise, a fall, high, low (1 to 4), at most so long [s]."""
+
+    def user_code(self, number: int, p: float | None, q: float | None) -> None:
+        """Call a code of the machine's own."""
 
     def mist(self, *, on: bool) -> None:
         """Switch mist coolant."""
@@ -112,14 +130,35 @@ class Sink(Protocol):
     def start_change(self) -> None:
         """Begin a tool change."""
 
-    def change_tool(self, tool: int) -> None:
-        """Put a tool into the spindle."""
+    def change_tool(self, slot: int, tool: int) -> None:
+        """Put a tool into the spindle; ``slot`` is its place in the tool table, from 1 (0: no tool)."""
+
+    def change_tool_number(self, slot: int, tool: int) -> None:
+        """Take note of the tool in the spindle."""
+
+    def set_tool_table_entry(self, slot: int, tool: Tool) -> None:
+        """Set a tool of the table; slot 0 is the tool in the spindle."""
+
+    def reload_tools(self) -> None:
+        """Read the tool table anew."""
 
     def comment(self, text: str) -> None:
         """Pass on a comment of the program, or a remark of the interpreter."""
 
     def message(self, text: str) -> None:
         """Tell the operator."""
+
+    def say(self, text: str) -> None:
+        """Write a line where the program's output goes (PRINT)."""
+
+    def open_log(self, name: str, *, append: bool) -> None:
+        """Open a log file, empty or at its end."""
+
+    def log(self, text: str) -> None:
+        """Write a line to the log file."""
+
+    def close_log(self) -> None:
+        """Close the log file."""
 
     def program_stop(self, *, optional: bool) -> None:
         """Wait for the operator, always or only if he wants."""

@@ -10,9 +10,13 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from trochia.languages.gcode.parameters import Parameters
 from trochia.program.modes import PathMode, Plane, TimeLaw
+from trochia.program.tools import NO_TOOL, Tool
 
 if TYPE_CHECKING:
+    from trochia.languages.gcode.compensator import Compensator
+    from trochia.languages.gcode.groups.saved_modes import Modes
     from trochia.program.work import WorkState
 
 INCH = 25.4  # mm
@@ -41,10 +45,37 @@ class State:
         G92 offset that applies now.
     systems, rotations
         G54 to G59.3 as stored [mm], [degree]; ``system`` counts from 1.
-    stored_shift
-        G92 offset that G92.3 brings back [mm].
+    stored_shift, shift_on
+        G92 offset that G92.3 brings back [mm], and whether one applies.
+    tool_offset
+        Of the tool in use, in machine directions (a turned system does not turn it).
+    tools
+        The tool table, in its order; None: every tool may be called.
+    tool, loaded, slot
+        Tool of the last T, tool in the spindle, and the place of that in the table, from 1.  Like the reference
+        alone, a program begins with slot 1 and no tool.
+    in_spindle
+        What is known of the tool in the spindle, which G43 without H uses.
+    surface_speed, most_speed
+        G96, and its D [rev/min]; None: no bound.
+    feed_override, speed_override, adaptive_feed, feed_hold
+        What the operator and the machine may do to the speed (M48 to M53).
+    input_value
+        What the last M66 read: 0 or 1, the value of an analogue input, or -1 after its time was over.
+    user_codes
+        M100 to M199 may be called.
+    unit
+        Length in which variables tell points and offsets [mm].
+    parameters
+        Variables of the program.
+    saved
+        Modes kept by M70 and M73, one entry for every call in progress, the program itself first.
     homes
         Points of G28 and G30, machine coordinates [mm].
+    compensation
+        Moves the tool's centre while G41 or G42 is in force.
+    straight_next
+        The next move must be straight, because cutter compensation has ended.
     tolerance, tolerance_along
         G64 P and Q as they act, in the unit they were given in.
     retract_to_r
@@ -74,14 +105,34 @@ class State:
     systems: list[list[float]] = field(default_factory=lambda: [_zeros() for _ in range(9)])
     rotations: list[float] = field(default_factory=_zeros)
     stored_shift: list[float] = field(default_factory=_zeros)
+    shift_on: bool = False
     homes: dict[int, list[float]] = field(default_factory=lambda: {28: _zeros(), 30: _zeros()})
+
+    tool_offset: list[float] = field(default_factory=_zeros)
+    tools: list[Tool] | None = None
+    loaded: int = 0
+    slot: int = 1
+    in_spindle: Tool = NO_TOOL
 
     direction: int = 0
     speed: float = 0.0
+    surface_speed: bool = False
+    most_speed: float | None = None
     tool: int = 0
+    feed_override: bool = True
+    speed_override: bool = True
+    adaptive_feed: bool = False
+    feed_hold: bool = True
+    input_value: float = 0.0
+    user_codes: bool = False
+    unit: float = 1.0
+    parameters: Parameters = field(default_factory=Parameters)
+    saved: list[Modes | None] = field(default_factory=lambda: [None])
     mist: bool = False
     flood: bool = False
     ended: bool = False
+    compensation: Compensator | None = None
+    straight_next: bool = False
 
     @property
     def scale(self) -> float:
@@ -93,6 +144,7 @@ def begin(work: WorkState, start: tuple[float, ...]) -> State:
     """Return the state in which a program starts at the machine position ``start`` (9) [mm, degree]."""
     from trochia.languages.gcode.frames import to_program  # noqa: PLC0415 - frames works on states
 
+    numbers = [tool.number for tool in work.tools or ()]
     state = State(
         system=work.active,
         origin=list(work.systems[work.active - 1]),
@@ -101,7 +153,37 @@ def begin(work: WorkState, start: tuple[float, ...]) -> State:
         rotations=list(work.rotations),
         stored_shift=list(work.g92),
         shift=list(work.g92) if work.g92_on else _zeros(),
+        shift_on=work.g92_on,
         homes={28: list(work.g28), 30: list(work.g30)},
+        user_codes=work.user_codes,
+        unit=work.unit,
+        tool_offset=list(work.tool_offset),
+        tools=None if work.tools is None else list(work.tools),
+        tool=work.tool,
+        loaded=work.tool,
+        slot=numbers.index(work.tool) + 1 if work.tool in numbers else 1,
+        in_spindle=next((tool for tool in work.tools or () if work.tool and tool.number == work.tool), NO_TOOL),
     )
     state.position = to_program(state, start)
     return state
+
+
+def work_of(state: State, before: WorkState) -> WorkState:
+    """Return what a program leaves set up on the machine; ``before`` is what it found, of which G92.3's rest stays."""
+    from dataclasses import replace  # noqa: PLC0415 - once a program
+
+    from trochia.languages.gcode.frames import in_mm  # noqa: PLC0415 - frames works on states
+
+    return replace(
+        before,
+        systems=tuple(tuple(system) for system in state.systems),
+        rotations=tuple(state.rotations),
+        active=state.system,
+        g92=tuple(state.stored_shift),
+        g92_on=state.shift_on,
+        g28=tuple(state.homes[28]),
+        g30=tuple(state.homes[30]),
+        tools=None if state.tools is None else tuple(state.tools),
+        tool=state.loaded,
+        tool_offset=tuple(in_mm(state, state.tool_offset)),
+    )

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from trochia.languages.gcode.codes import Code, Handler, table
 from trochia.languages.gcode.frames import to_machine, to_program
-from trochia.languages.gcode.groups.motion import target_of
+from trochia.languages.gcode.groups.motion import target_of, unseen_offset
 
 if TYPE_CHECKING:
     from trochia.languages.gcode.block import Block
@@ -23,6 +23,7 @@ def _go(home: int) -> Handler:
         way_point = target_of(block, state)
         sink.straight_traverse(way_point)
         stored = to_program(state, state.homes[home])
+        stored = [value + unseen_offset(state, axis) for axis, value in enumerate(stored)]
         axes = block.axes or range(len(stored))
         state.position = [stored[axis] if axis in axes else value for axis, value in enumerate(way_point)]
         sink.straight_traverse(state.position)

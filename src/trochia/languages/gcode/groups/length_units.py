@@ -36,7 +36,10 @@ def _change(state: State, *, inch: bool) -> None:
     state.position = scaled(state.position, factor)
     state.origin = scaled(state.origin, factor)
     state.shift = scaled(state.shift, factor)
+    state.tool_offset = scaled(state.tool_offset, factor)
     state.inch = inch
+    if state.compensation is not None:
+        state.compensation.rescale(factor)
 
 
 G_CODES = table(

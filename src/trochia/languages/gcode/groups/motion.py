@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from trochia.errors import ModalConflictError, ParseError
 from trochia.languages.gcode.codes import Code, table
-from trochia.languages.gcode.frames import turned
+from trochia.languages.gcode.frames import base_of, turned
 from trochia.languages.gcode.state import NO_MOTION
 from trochia.program.modes import TimeLaw
 
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from trochia.languages.gcode.sink import Sink
     from trochia.languages.gcode.state import State
 
+_Z = 2
 LEAST_INVERSE_RATE = 0.1  #: units/min an inverse-time move gets at least
 
 
@@ -24,6 +25,7 @@ def traverse(block: Block, state: State, sink: Sink) -> None:
     end = target_of(block, state)
     sink.straight_traverse(end)
     state.position = end
+    state.straight_next = False
     state.motion = 0
 
 
@@ -35,6 +37,7 @@ def feed(block: Block, state: State, sink: Sink) -> None:
         set_inverse_time(block, sink, _length(state.position, end))
     sink.straight_feed(end)
     state.position = end
+    state.straight_next = False
     state.motion = 10
 
 
@@ -102,12 +105,18 @@ def set_inverse_time(block: Block, sink: Sink, length: float) -> None:
 
 def _machine_target(words: dict[int, float], state: State) -> list[float]:
     """Return program coordinates of a target whose words are machine coordinates in program units."""
+    base = base_of(state)
     shifted = [value + shift for value, shift in zip(state.position, state.shift, strict=True)]
-    point = [value + origin for value, origin in zip(turned(shifted, state.rotation), state.origin, strict=True)]
+    point = [value + here for value, here in zip(turned(shifted, state.rotation), base, strict=True)]
     for axis, value in words.items():
-        point[axis] = value
-    point = turned([value - origin for value, origin in zip(point, state.origin, strict=True)], -state.rotation)
+        point[axis] = value + unseen_offset(state, axis)
+    point = turned([value - here for value, here in zip(point, base, strict=True)], -state.rotation)
     return [value - shift for value, shift in zip(point, state.shift, strict=True)]
+
+
+def unseen_offset(state: State, axis: int) -> float:
+    """Return what the reference leaves out of machine coordinates: tool offsets of axes other than X Y Z."""
+    return state.tool_offset[axis] if axis > _Z else 0.0
 
 
 def _length(start: list[float], end: list[float]) -> float:

@@ -22,6 +22,13 @@ def _stop(*, optional: bool) -> Handler:
     return stop
 
 
+def pallet(block: Block, state: State, sink: Sink) -> None:
+    """M60: change pallets and wait for the operator."""
+    del block, state
+    sink.pallet_shuttle()
+    sink.program_stop(optional=False)
+
+
 def _end(*, pallet: bool) -> Handler:
     def end(block: Block, state: State, sink: Sink) -> None:
         del block
@@ -43,8 +50,10 @@ def _reset(state: State, sink: Sink) -> None:
         sink.select_plane(Plane.XY)
     sink.set_feed_mode(TimeLaw.PER_SECOND)
     sink.set_feed_rate(0.0)
+    if not state.feed_override:  # the other overrides stay as they are, as in the reference
+        sink.feed_override(on=True)
     sink.stop_spindle()
-    sink.set_spindle_mode()
+    sink.set_spindle_mode(None, on=False)
     if state.mist:
         sink.mist(on=False)
     if state.flood:
@@ -55,5 +64,6 @@ M_CODES = table(
     Code(name="M0", about="stop", group="stopping", step="stop", run=_stop(optional=False)),
     Code(name="M1", about="stop, if the operator wants", group="stopping", step="stop", run=_stop(optional=True)),
     Code(name="M2", about="end of program", group="stopping", step="stop", run=_end(pallet=False)),
+    Code(name="M60", about="change pallet, stop", group="stopping", step="stop", run=pallet),
     Code(name="M30", about="end of program, change pallet", group="stopping", step="stop", run=_end(pallet=True)),
 )
