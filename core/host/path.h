@@ -65,6 +65,10 @@ typedef struct {
     uint32_t axes;        /* columns of the path */
     uint32_t columns[9];  /* which of the nine letters each is */
     uint32_t continuity;  /* 1: x' is continuous between stops; 2: x'' too */
+    uint32_t paced;       /* 1: the three below are given */
+    double slowness[9];   /* 1 / velocity limit of each column, 1 / acceleration limit, 1 / jerk limit (0: none) */
+    double effort[9];
+    double shake[9];
 } trochia_path_input;
 
 /* What is made of them; room for 3 segments and (7 + 10 axes) coefficients a move is the caller's; for continuous

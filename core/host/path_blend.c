@@ -5,6 +5,10 @@
  * Its points at s lie that near the programmed points at s, so the bound holds both ways (Hausdorff).  It beats the arc
  * of a circle because axis limits are a box and the corner's acceleration points one way.
  *
+ * Where one of the two is slower, braking (or speeding up) in the faster move's half has to share the acceleration with
+ * turning.  Passed at the slower speed v, a blend needs d = v^2 max |m| / 2A; it gets no more than four times that, a
+ * quarter of the acceleration, or rounding the corner would cost more time than stopping there.
+ *
  * A line and an arc, or two arcs.  Either the same from both sides (cubic by Hermite: ends and tangents), or, where
  * directions differ little, on one arc alone: with an error e of direction at one end of d the cubic needs 4 e / d more
  * curvature and leaves the programmed path by 4 e d / 27, while the jump of curvature at the joint stays the one the
@@ -19,6 +23,7 @@ static const double REVERSAL = -0.9994; /* cosine: within 2 degrees of turning b
 static const double ARC_SHARE = 0.2;    /* rad: how much of an arc a one-sided blend replaces at most */
 static const double ARC_BOTH = 0.35;    /* rad: and a two-sided one */
 static const double ALONE = 0.1;        /* rad: beyond this a one-sided blend would swing out noticeably */
+static const double PACE = 0.999;       /* part of the faster move's speed from which the slower counts as as fast */
 enum { SAMPLES = 16 };
 
 static double norm_between(const double *vector, uint32_t from, uint32_t to) {
@@ -53,6 +58,31 @@ int trochia_is_reversal(uint32_t n, const double *before, const double *after) {
         two += after[i] * after[i];
     }
     return dot < 0.0 && dot * dot > REVERSAL * REVERSAL * one * two;
+}
+
+/* Speed of a move by its feed and the axes' velocities. */
+static double pace_of(const trochia_frame *frame, double speed, const double *direction) {
+    double slowness = 1.0 / speed;
+    for (uint32_t i = 0; i < frame->n; i++)
+        slowness = fmax(slowness, fabs(direction[i]) * frame->in->slowness[i]);
+    return 1.0 / slowness;
+}
+
+double trochia_pace_room(const trochia_frame *frame, const trochia_curve *a, const trochia_curve *b,
+                         const double *jump) {
+    const trochia_path_input *in = frame->in;
+    if (!in->paced)
+        return INFINITY;
+    double before = pace_of(frame, a->speed, a->t1), after = pace_of(frame, b->speed, b->t0);
+    double slow = fmin(before, after), effort = 0.0, shake = 0.0;
+    if (slow > PACE * fmax(before, after))
+        return INFINITY;
+    for (uint32_t i = 0; i < frame->n; i++) {
+        effort = fmax(effort, fabs(jump[i]) * in->effort[i]);
+        shake = fmax(shake, fabs(jump[i]) * in->shake[i]);
+    }
+    double bend = slow * slow * effort;
+    return in->continuity > 1 ? fmax(4.0 * bend, sqrt(8.0 * slow * slow * slow * shake)) : 2.0 * bend;
 }
 
 /* The ways to take a joint where an arc takes part, the least curved of them. */
@@ -92,11 +122,13 @@ trochia_joint trochia_joint_wanted(const trochia_frame *frame, const trochia_cur
         joint.stop = 1;
         return joint;
     }
-    double size = trochia_group_norm(frame, jump);
-    if (a->kappa > 0.0 || b->kappa > 0.0)
+    double size = trochia_group_norm(frame, jump), room = trochia_pace_room(frame, a, b, jump);
+    if (a->kappa > 0.0 || b->kappa > 0.0) {
         want_at_arc(a, b, size, tolerance, &joint);
-    else
-        joint.before = joint.after = 4.0 * tolerance / size;
+        joint.before = fmin(joint.before, room);
+        joint.after = fmin(joint.after, room);
+    } else
+        joint.before = joint.after = fmin(4.0 * tolerance / size, room);
     return joint;
 }
 

@@ -36,7 +36,7 @@ static void classify_arc(const trochia_frame *frame, const trochia_curve *a, con
     turn->kind = turn->tolerance > 0.0 ? TROCHIA_TURN_ARC : TROCHIA_TURN_STOP;
     double even = 0.1806 * turn->size, square = 0.0045 * jump;
     double most = 2.0 * turn->tolerance / (even + sqrt(even * even + 4.0 * square * turn->tolerance));
-    turn->wish = fmin(most, ARC_BOTH / kappa);
+    turn->wish = fmin(fmin(most, ARC_BOTH / kappa), trochia_pace_room(frame, a, b, turn->jump));
 }
 
 void trochia_turn_classify(const trochia_frame *frame, const trochia_curve *a, const trochia_curve *b,
@@ -61,7 +61,7 @@ void trochia_turn_classify(const trochia_frame *frame, const trochia_curve *a, c
     if (turn->size <= STRAIGHT || (turn->tolerance == 0.0 && trochia_is_tangent(frame, a->t1, turn->jump)))
         return;
     turn->kind = turn->tolerance > 0.0 ? TROCHIA_TURN_CORNER : TROCHIA_TURN_STOP;
-    turn->wish = 6.0 * turn->tolerance / turn->size;
+    turn->wish = fmin(6.0 * turn->tolerance / turn->size, trochia_pace_room(frame, a, b, turn->jump));
 }
 
 static void next_piece(uint32_t n, const double *c, double k, double *d) {

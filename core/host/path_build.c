@@ -27,12 +27,13 @@ static void emit_blend(trochia_reader *r, const trochia_curve *a, const trochia_
 }
 
 /* Settles the joint from `a` to `b`, given what is wanted of `b` at its other end; emits `a` and the blend. */
-static void settle(trochia_reader *r, const trochia_curve *a, const trochia_curve *b, double cut, double wanted_of_b,
-                   trochia_joint *joint) {
+static void settle(trochia_reader *r, const trochia_curve *a, trochia_curve *b, double cut, double wanted_of_b,
+                   int b_rests, trochia_joint *joint) {
     trochia_blend blend = {.length = 0.0};
     if (joint->before > 0.0 || joint->after > 0.0) {
-        double before = fmin(joint->before, a->length - cut);
-        double after = trochia_share(joint->after, wanted_of_b, b->length);
+        double before = fmin(joint->before, a->rested ? REST_SHARE * a->length : a->length - cut);
+        double after =
+            fmin(joint->after, b_rests ? REST_SHARE * b->length : trochia_share(joint->after, wanted_of_b, b->length));
         if (joint->before > 0.0 && joint->after > 0.0)
             before = after = fmin(before, after);
         joint->before = before;
@@ -40,6 +41,7 @@ static void settle(trochia_reader *r, const trochia_curve *a, const trochia_curv
         trochia_joint_blend(&r->frame, a, b, joint, &blend);
     }
     trochia_emit_curve(r, a, cut, a->length - cut - joint->before);
+    b->rested = (uint8_t)(joint->stop != 0);
     if (joint->stop)
         r->out->segments[r->out->segment_count - 1].stop = 1;
     else if (blend.length > 0.0)
@@ -65,10 +67,11 @@ int32_t trochia_path_build(const trochia_path_input *input, trochia_path_output 
         if (c->length == 0.0)
             continue;
         trochia_joint bc = {0.0, 0.0, 0};
+        c->rested = b == NULL;
         if (b)
             bc = trochia_joint_wanted(&reader.frame, b, c);
         if (a) {
-            settle(&reader, a, b, cut, bc.before, &ab);
+            settle(&reader, a, b, cut, bc.before, bc.stop, &ab);
             cut = ab.after;
         }
         trochia_curve *next = a ? a : &curves[b ? 2 : 1];
@@ -78,7 +81,7 @@ int32_t trochia_path_build(const trochia_path_input *input, trochia_path_output 
         ab = bc;
     }
     if (a) {
-        settle(&reader, a, b, cut, 0.0, &ab);
+        settle(&reader, a, b, cut, 0.0, 1, &ab);
         cut = ab.after;
     }
     if (b)

@@ -109,9 +109,11 @@ void trochia_turn_settle(const trochia_chain *chain, uint32_t n, uint64_t i) {
         return;
     const trochia_turn *last = &trochia_link_at(chain, i - 1)->turn, *next = &trochia_link_at(chain, i + 1)->turn;
     double h0 = trochia_link_at(chain, i - 1)->curve.length, h1 = trochia_link_at(chain, i)->curve.length;
-    double wish = 6.0 * fmax(turn->tolerance - turn->used, 0.0) / turn->size;
-    double before = takes(last) ? h0 - last->after : h0;
-    double after = takes(next) ? trochia_share(wish, next->wish, h1) : h1;
+    double wish = fmin(turn->wish, 6.0 * fmax(turn->tolerance - turn->used, 0.0) / turn->size);
+    double before = takes(last) ? h0 - last->after : last->kind == TROCHIA_TURN_STOP ? REST_SHARE * h0 : h0;
+    double after = takes(next)                       ? trochia_share(wish, next->wish, h1)
+                   : next->kind == TROCHIA_TURN_STOP ? REST_SHARE * h1
+                                                     : h1;
     turn->before = turn->after = fmin(wish, fmin(before, after));
     turn->used += turn->size * turn->after / 6.0;
     turn->lean = 0;

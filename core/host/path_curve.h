@@ -11,6 +11,7 @@
 typedef struct {
     uint32_t n;
     uint32_t groups[4];
+    const trochia_path_input *in;
 } trochia_frame;
 
 typedef struct {
@@ -22,7 +23,12 @@ typedef struct {
     uint8_t kind, first, second;
     uint8_t halt;   /* at rest before it */
     uint8_t settle; /* at rest after it (G61.1) */
+    uint8_t rested; /* found to be at rest where it begins */
 } trochia_curve;
+
+/* Part of a curve with rest at its other end that a joint may take: the rest of it brakes or speeds up by its own
+ * direction alone. */
+#define REST_SHARE 0.5
 
 typedef struct {
     double before, after; /* length wanted (then: taken) of the curve before and after; 0 and 0: no blend */
@@ -66,6 +72,11 @@ double trochia_group_norm(const trochia_frame *frame, const double *vector);
 
 /* Returns 1 where x' is the same before and after, for all that a machine can tell. */
 int trochia_is_tangent(const trochia_frame *frame, const double *before, const double *jump);
+
+/* Greatest length a joint's blend should take on either side: where one move is slower than the other, no more than its
+ * speed needs twice over; infinity elsewhere. */
+double trochia_pace_room(const trochia_frame *frame, const trochia_curve *a, const trochia_curve *b,
+                         const double *jump);
 
 /* Returns 1 within 2 degrees of turning back. */
 int trochia_is_reversal(uint32_t n, const double *before, const double *after);

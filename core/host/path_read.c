@@ -208,6 +208,7 @@ void trochia_emit_curve(trochia_reader *r, const trochia_curve *curve, double cu
 void trochia_start_reader(trochia_reader *r) {
     const trochia_path_input *in = r->in;
     r->frame.n = in->axes;
+    r->frame.in = in;
     for (uint32_t group = 0; group < 4; group++) {
         uint32_t below = 0;
         for (uint32_t i = 0; i < in->axes; i++)

@@ -98,16 +98,16 @@ def built(moves, rests=None, columns=(0, 1), tolerance=0.01):
 
 
 def reference_shares(points, tolerance):
-    """What each joint of a chain of lines takes: its wish, or half, or what the other leaves."""
+    """What each joint of a chain takes: its wish, or half, or what the other leaves; half at most beside rest."""
     steps = np.diff(np.array([(0.0, 0.0), *points]), axis=0)
     lengths = np.linalg.norm(steps, axis=1)
     unit = steps / lengths[:, None]
     wishes = [4 * tolerance / np.linalg.norm(b - a) for a, b in pairwise(unit)]
     taken, before = [], 0.0
     for k, wish in enumerate(wishes):
-        other = wishes[k + 1] if k + 1 < len(wishes) else 0.0
+        other = wishes[k + 1] if k + 1 < len(wishes) else math.inf
         after = lengths[k + 1] - other if other < lengths[k + 1] / 2 else lengths[k + 1] / 2
-        before = min(wish, lengths[k] - before, after)
+        before = min(wish, lengths[k] - before if k else lengths[k] / 2, after)
         taken.append(before)
     return taken
 

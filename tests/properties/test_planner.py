@@ -120,8 +120,8 @@ def test_a_tolerance_does_not_cost_time(motion, name, data):
     program = data.draw(motion.programs(machine))
     blended = plan(build(program, machine), machine, program=program)
     exact = plan(build(program, machine, blend=False), machine, program=program)
-    # a slow move after a fast one: braking ends before the corner, not on it
-    assert blended.duration <= exact.duration * 1.03
+    # beside moves that are slow or short a blend is no longer than they need; what is left is braking while turning
+    assert blended.duration <= exact.duration * 1.005 + 1e-3
 
 
 @pytest.mark.parametrize("name", MACHINES)

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from trochia.program import PathMode
+from trochia.program import MOVE, PathMode, Program
 from trochia.toolpath import SegmentKind, build
 
 MACHINES = ["mill", "rotary"]
@@ -113,6 +113,88 @@ def test_blends_stay_inside_the_tolerance_both_ways(motion, data, exponent):
         # what the joints before and after take of the same move is theirs to answer for
         near = programmed[DENSE // 2 : -DENSE // 2 : 15]
         assert polyline_distance(near, np.concatenate(around)).max() <= tolerance * (1 + 1e-5)
+
+
+def dense(path, least=4000):
+    """Points along a whole path, and how far a curve may leave the chords between them."""
+    each = max(40, least // len(path))
+    rows = np.repeat(np.arange(len(path)), each)
+    length = path.segments["length"]
+    points = path.points(rows, np.tile(np.linspace(0, 1, each), len(path)) * length[rows])[:, :3]
+    every = np.arange(len(path))
+    bend = np.max([np.linalg.norm(path.points(every, length * u, 2), axis=1) for u in (0.0, 0.5, 1.0)], axis=0)
+    return points, float((1.2 * bend * (length / (each - 1)) ** 2 / 8).max())
+
+
+@pytest.mark.parametrize("name", MACHINES)
+@given(data=st.data())
+def test_curvature_jumps_at_stops_only(motion, name, data):
+    machine = motion.machines[name]
+    program = data.draw(motion.programs(machine))
+    path = build(program, machine, continuity=2)
+    if not len(path):
+        return
+    passing = path.segments["stop"][:-1] == 0
+    for derivative, allowed in ((0, 1e-9), (1, 1e-6), (2, 1e-6)):
+        starts, finishes = ends(path, derivative)
+        scale = max(1.0, np.abs(starts).max()) if derivative else 1.0
+        assert np.abs(starts[1:] - finishes[:-1])[passing].max(initial=0) <= 1.001 * allowed * scale
+    assert np.allclose(ends(path, 0)[1][-1], program.moves["target"][-1][list(machine.columns)], atol=1e-9)
+    assert (np.diff(path.segments["move"].astype(int)) >= 0).all()
+
+
+@st.composite
+def chains(draw):
+    """Chords as files have them: even or uneven, smooth, rounded to a grid, or turning anyhow."""
+    chance = np.random.default_rng(draw(st.integers(0, 2**16)))
+    count, size = draw(st.integers(2, 60)), 10 ** chance.uniform(-2, 1)
+    turns = chance.choice([0.005, 0.05, 0.5, 3.0]) * chance.uniform(-1, 1, count)
+    if chance.uniform() < 0.5:
+        turns[:] = turns[0]
+    lengths = size * 10 ** (chance.choice([0.0, 1e-5, 0.2, 1.0]) * chance.uniform(-0.5, 0.5, count))
+    heading = np.cumsum(turns)
+    steps = lengths[:, None] * np.stack(
+        [np.cos(heading), np.sin(heading), chance.choice([0, 0.3]) * np.sin(heading)], 1
+    )
+    return np.round(np.cumsum(steps, axis=0), int(draw(st.sampled_from([3, 4, 12]))))
+
+
+def program_through(points, tolerance):
+    moves = np.zeros(len(points), dtype=MOVE)
+    moves["target"][:, :3], moves["kind"], moves["rate"] = points, 1, 50.0
+    moves["path_mode"], moves["tolerance"] = PathMode.BLEND, tolerance
+    return Program(name="chain", lines=len(points), start=np.zeros(9), moves=moves, actions=())
+
+
+def assert_near(program, machine, tolerance):
+    path, exact = build(program, machine, continuity=2), build(program, machine, blend=False)
+    if not len(path):
+        return
+    (commanded, slack), (programmed, other) = dense(path), dense(exact)
+    allowed = tolerance * (1 + 1e-9) + slack + other + 1e-12
+    assert polyline_distance(commanded[::23], programmed).max() <= allowed
+    assert polyline_distance(programmed[::23], commanded).max() <= allowed
+
+
+@given(points=chains(), exponent=st.floats(-4, 0))
+def test_chains_stay_inside_the_tolerance_both_ways_and_are_smooth(motion, points, exponent):
+    program = program_through(points, 10**exponent)
+    machine = motion.machines["mill"]
+    assert_near(program, machine, 10**exponent)
+    path = build(program, machine, continuity=2)
+    if not len(path):
+        return
+    passing = path.segments["stop"][:-1] == 0
+    for derivative in (1, 2):
+        starts, finishes = ends(path, derivative)
+        apart = np.abs(starts[1:] - finishes[:-1])[passing].max(initial=0)
+        assert apart <= 1.1e-9 * max(1.0, np.abs(starts).max())
+
+
+@given(data=st.data(), exponent=st.floats(-4, 0))
+def test_smooth_joints_of_arcs_stay_inside_the_tolerance_both_ways(motion, data, exponent):
+    program = data.draw(motion.programs(motion.machines["mill"], st.just((PathMode.BLEND, 10**exponent)), most=6))
+    assert_near(program, motion.machines["mill"], 10**exponent)
 
 
 @given(data=st.data())

@@ -31,6 +31,7 @@ def build(
     columns: Sequence[int],
     tolerance: float,
     continuity: int = 1,
+    limits: NDArray[np.float64] | None = None,
 ) -> tuple[NDArray[np.void], NDArray[np.float64], tuple[str, int] | None]:
     """Return the segments and coefficients of a program's moves, and what stopped the work, if anything did.
 
@@ -50,6 +51,9 @@ def build(
         Of G64 without P [mm]; negative: no blends at all.
     continuity
         1: x' is continuous between stops; 2: x'' too.
+    limits
+        Velocity, acceleration and jerk of each column (3, axes), infinite where there is none: blends beside slow moves
+        are then no longer than these need.
 
     Returns
     -------
@@ -80,6 +84,12 @@ def build(
         pointer(moves, "trochia_move *"), pointer(flags, "uint8_t *"), pointer(speeds, "double *")
     )  # fmt: skip
     given.count, given.axes, given.tolerance, given.continuity = count, axes, tolerance, continuity
+    if limits is not None:
+        if limits.shape != (3, axes) or not (limits > 0.0).all():
+            raise ValueError("limits are positive, (3, axes)")
+        given.paced = 1
+        for field, row in zip((given.slowness, given.effort, given.shake), 1.0 / limits, strict=True):
+            field[0:axes] = list(row)
     given.start = list(start)
     given.columns = list(columns) + [0] * (_NINE - axes)
     made.segments, made.pool = pointer(segments, "trochia_segment *"), pointer(pool, "double *")

@@ -45,12 +45,18 @@ def build(program: Program, machine: Machine, *, blend: bool = True, continuity:
     columns = machine.columns
     segments, pool, fault = kernel.build(
         program.moves, _rests(program), _spindle_speeds(program), start=program.start, columns=columns,
-        tolerance=machine.path_tolerance if blend else -1.0, continuity=continuity,
+        tolerance=machine.path_tolerance if blend else -1.0, continuity=continuity, limits=_limits(machine),
     )  # fmt: skip
     if fault:
         raise _no_speed(program, *fault)
     letters = "".join(axis.name for axis in machine.axes)
     return Toolpath(axes=letters, start=program.start[list(columns)], segments=segments, pool=pool)
+
+
+def _limits(machine: Machine) -> NDArray[np.float64]:
+    """Return velocity, acceleration and jerk of each axis (3, n), infinite where there is none."""
+    rows = [(a.velocity, a.acceleration, np.inf if a.jerk is None else a.jerk) for a in machine.axes]
+    return np.array(rows, dtype=np.float64).T
 
 
 def _rests(program: Program) -> NDArray[np.uint8]:
