@@ -159,35 +159,58 @@ static trochia_range range_of(const trochia_stretch *stretches, uint64_t from, u
     return range;
 }
 
-/* By way of the highest peak; the range and the speed `least` are known to be possible. */
-static void run_high(trochia_writer *w, uint64_t to, const trochia_range *range, double v, double least) {
-    least = trochia_larger(least, trochia_larger(w->v, v));
-    double peak = trochia_ramp_peak(range, w->v, v, least);
-    run(w, to, range, v, trochia_larger(peak, least));
+/* A run by way of the highest peak, not yet written. */
+typedef struct {
+    trochia_range range;
+    double v, peak, time; /* where it ends, its highest, how long it takes (infinite: not possible) */
+} trochia_way;
+
+static trochia_way way_over(const trochia_range *range, double u, double v) {
+    double peak = trochia_ramp_peak(range, u, v);
+    trochia_way way = {.range = *range, .v = v, .peak = peak, .time = INFINITY};
+    if (peak < 0.0)
+        return way;
+    trochia_budget b = trochia_budget_at(range, peak);
+    double even = range->length - trochia_ramp_way(u, peak, b) - trochia_ramp_way(v, peak, b);
+    way.time = trochia_ramp_time(peak - u, b) + trochia_ramp_time(peak - v, b) + trochia_larger(even, 0.0) / peak;
+    return way;
 }
 
-/* The ramp has met what the pass back allows, at boundary b: on to the next place where that has a = 0. */
+static void run_over(trochia_writer *w, uint64_t to, const trochia_range *range, double v) {
+    trochia_way way = way_over(range, w->v, v);
+    run(w, to, &way.range, v, way.peak);
+}
+
+/* The ramp has met what the pass back allows, at boundary b: on to the next place where that has a = 0, at once, or by
+ * way of a = 0 at b or one before, whichever is quickest. */
 static uint64_t join(trochia_writer *w, const trochia_front *far, uint64_t b) {
     uint64_t to = b;
     while (to < w->count && !w->stretches[to].node)
         to++;
     double met = b < w->count ? w->stretches[b].back : 0.0, v = to < w->count ? w->stretches[to].back : 0.0;
-    trochia_range range = far->range, rest_of_it = range_of(w->stretches, b, to);
+    trochia_range after = range_of(w->stretches, b, to), whole = far->range;
     for (uint64_t k = b; k < to; k++)
-        trochia_range_add(&range, &w->stretches[k]);
-    double least = trochia_larger(far->until, met), peak = trochia_ramp_peak(&range, far->v, v, least);
-    if (peak >= 0.0) {
-        run(w, to, &range, v, peak);
-    } else if (far->until >= met) {
-        if (far->at + 1 < b)
-            run_high(w, b - 1, &far->before, far->until, 0.0);
-        trochia_range after = range_of(w->stretches, b - 1, to);
-        run_high(w, to, &after, v, 0.0);
-    } else {
-        run_high(w, b, &far->range, met, 0.0);
-        if (to > b)
-            run_high(w, to, &rest_of_it, v, 0.0);
+        trochia_range_add(&whole, &w->stretches[k]);
+    trochia_way once = way_over(&whole, far->v, v), first[2], second[2];
+    double times[2] = {INFINITY, INFINITY};
+    if (to > b) {
+        first[0] = way_over(&far->range, far->v, met);
+        second[0] = way_over(&after, met, v);
+        times[0] = first[0].time + second[0].time;
     }
+    if (far->at + 1 < b) {
+        trochia_range last = range_of(w->stretches, b - 1, to);
+        first[1] = way_over(&far->before, far->v, far->until);
+        second[1] = way_over(&last, far->until, v);
+        times[1] = first[1].time + second[1].time;
+    }
+    int least = times[1] < times[0];
+    if (once.time <= times[least]) {
+        run(w, to, &once.range, v, once.peak);
+        return to;
+    }
+    run(w, least ? b - 1 : b, &first[least].range, first[least].v, first[least].peak);
+    run(w, to, &second[least].range, v, second[least].peak);
     return to;
 }
 
@@ -199,14 +222,14 @@ static void forward(trochia_writer *w) {
         double cap = b < w->count ? stretches[b].back : 0.0, v = grow(&far, here, cap);
         if (v < cap && near.at != far.at && grow(&near, here, cap) > v * SLACK) {
             trochia_range before = range_of(stretches, far.at, near.at);
-            run_high(w, near.at, &before, near.v, 0.0);
+            run_over(w, near.at, &before, near.v);
             far = near;
             v = near.reached;
         }
         if (v < cap && far.at != b - 1) {
             trochia_front fresh = front_at(b - 1, far.until);
             if (grow(&fresh, here, cap) > v * SLACK) {
-                run_high(w, b - 1, &far.before, far.until, 0.0);
+                run_over(w, b - 1, &far.before, far.until);
                 far = near = fresh;
                 v = fresh.reached;
             }

@@ -2,6 +2,8 @@
 #include "host/scurve_ramp.h"
 
 static const int HALVINGS = 44;
+/* Lengths summed in another order may differ by this much. */
+static const double SUMMED = 1.0 + 1e-10;
 static const double ROUNDING = 1.0 - 1e-13;
 
 /* Where nothing depends on v: both forms of the ramp solved for its end. */
@@ -47,9 +49,9 @@ static double both_ways(const trochia_range *range, double u0, double u1, double
     return trochia_ramp_way(u0, v, b) + trochia_ramp_way(u1, v, b);
 }
 
-double trochia_ramp_peak(const trochia_range *range, double u0, double u1, double least) {
-    double low = trochia_larger(least, trochia_larger(u0, u1)), high = range->ceiling;
-    if (low > high || both_ways(range, u0, u1, low) > range->length)
+double trochia_ramp_peak(const trochia_range *range, double u0, double u1) {
+    double low = trochia_larger(u0, u1), high = range->ceiling;
+    if (low > high || both_ways(range, u0, u1, low) > range->length * SUMMED)
         return -1.0;
     double length = range->length * ROUNDING;
     if (both_ways(range, u0, u1, high) <= length)

@@ -66,7 +66,7 @@ static inline double trochia_ramp_way(double u, double v, trochia_budget b) {
 /* Greatest v in [u, most] that a ramp over the whole range reaches from u. */
 double trochia_ramp_reach(const trochia_range *range, double u, double most);
 
-/* Greatest v in [least, range's ceiling] that a ramp from u0 and one back to u1 allow; below `least`: none. */
-double trochia_ramp_peak(const trochia_range *range, double u0, double u1, double least);
+/* Greatest v up to the range's ceiling that a ramp from u0 and one back to u1 allow; negative: none. */
+double trochia_ramp_peak(const trochia_range *range, double u0, double u1);
 
 #endif
