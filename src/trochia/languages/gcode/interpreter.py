@@ -13,6 +13,7 @@ from trochia.languages.gcode.block import sort_words
 from trochia.languages.gcode.check import check
 from trochia.languages.gcode.codes import key_of
 from trochia.languages.gcode.fast import FastPath
+from trochia.languages.gcode.groups.compensation import run_compensated, sink_of
 from trochia.languages.gcode.place import Place
 from trochia.languages.gcode.reader import LONGEST_LINE, read_line
 from trochia.languages.gcode.registry import RANK
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     from mmap import mmap
 
     from trochia.languages.gcode.block import Block
-    from trochia.languages.gcode.codes import Handler
+    from trochia.languages.gcode.codes import Code, WordCode
     from trochia.languages.gcode.sink import Sink
     from trochia.languages.gcode.state import State
 
@@ -185,7 +186,7 @@ class _Walk:
             raw, offset = _next(text, offset)
             if in_percent and raw.strip() == b"%":
                 if opened:
-                    self._sink.finish()
+                    sink_of(state, self._sink).finish()
                     return
                 opened = True
             elif opened:
@@ -203,6 +204,8 @@ class _Walk:
         if self._block_delete and place.raw.lstrip()[:1] == b"/":
             return
         self._sink.line = place.line
+        if self._state.compensation is not None:
+            self._state.compensation.line = place.line
         block: Block | None = None
         try:
             block = sort_words(read_line(place), self._axes)
@@ -232,18 +235,21 @@ class _Walk:
 def execute(block: Block, state: State, sink: Sink) -> None:
     """Let the parts of a checked line act in the order of execution."""
     if block.comment is not None:
-        _comment(block.comment, sink)
-    parts: list[tuple[int, Handler]] = [(RANK[code.step], code.run) for code in block.codes]
-    parts += [(RANK[word.step], word.run) for word in block.acting]
+        _comment(block.comment, sink_of(state, sink))
+    parts: list[tuple[int, Code | WordCode]] = [(RANK[code.step], code) for code in block.codes]
+    parts += [(RANK[word.step], word) for word in block.acting]
     if block.motion is not None and "motion" not in block.groups:
-        parts.append((RANK["motion"], block.motion.run))
+        parts.append((RANK["motion"], block.motion))
     if len(parts) > 1:
         parts.sort(key=_rank)
-    for _, run in parts:
-        run(block, state, sink)
+    for _, part in parts:
+        if state.compensation is None:
+            part.run(block, state, sink)
+        else:
+            run_compensated(part, block, state, sink)
 
 
-def _rank(part: tuple[int, Handler]) -> int:
+def _rank(part: tuple[int, Code | WordCode]) -> int:
     return part[0]
 
 

@@ -43,6 +43,9 @@ def counter_clockwise(block: Block, state: State, sink: Sink) -> None:
 
 def _arc(block: Block, state: State, sink: Sink, sense: int) -> None:
     """Send the arc of this line; ``sense`` is +1 counter-clockwise, -1 clockwise."""
+    if state.straight_next:
+        raise block.fault(ModalConflictError, "the move behind cutter compensation must be straight", block.mover,
+                          hint="Lead away from the part by G0 or G1 first.")  # fmt: skip
     form = _form_of(block, state)
     require_feed(block, state)
     end = target_of(block, state)
