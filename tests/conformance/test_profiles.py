@@ -16,7 +16,8 @@ TEXT = "G64 P0.02\nF4800\nG1 X30\nG3 X40 Y10 J10\nG1 Y30\nX0 Y31\nG4 P0.5\nG0 X0
 @pytest.fixture(params=sorted(PROFILES))
 def trajectory(request):
     machine, program = load("reference-mill"), gcode.read(TEXT)
-    return plan(build(program, machine), machine, program=program, profile=request.param)
+    path = build(program, machine, continuity=PROFILES[request.param].continuity)
+    return plan(path, machine, program=program, profile=request.param)
 
 
 def test_from_rest_to_rest_at_the_programs_ends(trajectory):
@@ -41,7 +42,8 @@ def test_itemised_times_sum_to_the_whole(trajectory):
 
 def test_peaks_are_those_of_the_samples_and_inside_the_limits(trajectory):
     t = np.linspace(0, trajectory.duration, 20_001)
-    for kind in ("velocity", "acceleration"):
+    kinds = ("velocity", "acceleration", "jerk") if trajectory.schedule.jerk_limited else ("velocity", "acceleration")
+    for kind in kinds:
         seen = np.abs(getattr(trajectory, kind)(t)).max(axis=0)
         limits = getattr(trajectory.limits, kind)
         for column, letter in enumerate(trajectory.path.axes):

@@ -1,0 +1,115 @@
+"""Laws of every jerk-limited trajectory: no limit is ever exceeded, acceleration never jumps, passing costs no time."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from trochia.kernels import path as kernel
+from trochia.planner import plan
+from trochia.toolpath import build
+
+POINTS = 11
+MACHINES = ["mill", "capped", "belts", "rotary"]
+
+
+def machine_of(motion, name):
+    """The machine with jerk limits where its file gives none, and on the vector where it has caps."""
+    machine = motion.machines[name]
+    axes = tuple(dataclasses.replace(axis, jerk=axis.jerk or 20 * axis.acceleration) for axis in machine.axes)
+    caps = dataclasses.replace(machine.path, jerk=15_000.0) if name == "capped" else machine.path
+    return dataclasses.replace(machine, axes=axes, path=caps)
+
+
+def planned(motion, name, data):
+    machine = machine_of(motion, name)
+    program = data.draw(motion.programs(machine))
+    return plan(build(program, machine, continuity=2), machine, program=program, profile="s-curve")
+
+
+def inside(phases):
+    """States at evenly spaced instants of every phase, ends included, by the phases' own arithmetic."""
+    states = np.repeat(phases, POINTS)
+    tau = np.tile(np.linspace(0, 1, POINTS), len(phases)) * states["duration"]
+    states["s"] += tau * (states["v"] + tau * (states["a"] / 2 + tau * states["j"] / 6))
+    states["v"] += tau * (states["a"] + tau * states["j"] / 2)
+    states["a"] += tau * states["j"]
+    return states
+
+
+def derivative(trajectory, states, order):
+    path = trajectory.path
+    return kernel.sample(path.segments, path.pool, len(path.axes), states, order)
+
+
+@pytest.mark.parametrize("name", MACHINES)
+@given(data=st.data())
+def test_no_limit_is_exceeded_anywhere(motion, name, data):
+    trajectory = planned(motion, name, data)
+    limits, linear = trajectory.limits, slice(0, trajectory.limits.linear)
+    rows = (limits.velocity, limits.acceleration, limits.jerk)
+    caps = (limits.path_velocity, limits.path_acceleration, limits.path_jerk)
+    for phases in trajectory.blocks(64):
+        states = inside(phases)
+        for order, (row, cap) in enumerate(zip(rows, caps, strict=True), start=1):
+            asked = derivative(trajectory, states, order)
+            assert (np.abs(asked @ limits.matrix.T) <= row * (1 + 1e-9)).all()
+            assert (np.linalg.norm(asked[:, linear], axis=1) <= cap * (1 + 1e-9)).all()
+
+
+@pytest.mark.parametrize("name", ["mill", "belts"])
+@given(data=st.data())
+def test_no_feed_is_exceeded(motion, name, data):
+    trajectory = planned(motion, name, data)
+    for phases in trajectory.blocks():
+        states = inside(phases)
+        speed = np.linalg.norm(derivative(trajectory, states, 1), axis=1)
+        assert (speed <= trajectory.path.segments["speed_limit"][states["segment"]] * (1 + 1e-9)).all()
+
+
+@pytest.mark.parametrize("name", MACHINES)
+@given(data=st.data())
+def test_place_velocity_and_acceleration_go_on_without_a_jump(motion, name, data):
+    trajectory = planned(motion, name, data)
+    if trajectory.schedule is None:
+        return
+    phases = np.concatenate(list(trajectory.blocks()))
+    assert (phases["duration"] > 0).all()
+    ends = phases["t"] + phases["duration"]
+    assert np.abs(ends[:-1] - phases["t"][1:]).max(initial=0) <= 1e-9 * (1 + trajectory.duration)
+    assert ends[-1] == pytest.approx(trajectory.duration, rel=1e-9)
+    states = inside(phases)
+    # directions closer than 1e-6 rad count as the same
+    for order, close in enumerate([1e-9, 2e-6, 1e-5]):
+        value = derivative(trajectory, states, order)
+        jump = np.abs(value[POINTS - 1 : -1 : POINTS] - value[POINTS::POINTS]).max(initial=0)
+        assert jump <= close * (np.abs(value).max(initial=1.0) if order else 1.0)
+    assert states["v"][-1] == pytest.approx(0.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("name", MACHINES)
+@given(data=st.data())
+def test_states_at_given_times_agree_with_the_phases(motion, name, data):
+    trajectory = planned(motion, name, data)
+    if trajectory.schedule is None:
+        return
+    phases = np.concatenate(list(trajectory.blocks(5)))
+    middle = phases["t"] + phases["duration"] / 2
+    states = inside(phases)[POINTS // 2 :: POINTS]
+    assert np.allclose(trajectory.position(middle), derivative(trajectory, states, 0), atol=1e-9)
+    assert trajectory.move_times.sum() == pytest.approx(trajectory.times["motion"], rel=1e-9)
+
+
+@pytest.mark.parametrize("name", ["mill", "capped"])
+@given(data=st.data())
+def test_a_tolerance_hardly_costs_time(motion, name, data):
+    machine = machine_of(motion, name)
+    program = data.draw(motion.programs(machine))
+    blended = plan(build(program, machine, continuity=2), machine, program=program, profile="s-curve")
+    exact = plan(build(program, machine, blend=False), machine, program=program, profile="s-curve")
+    # a tight corner is passed at an even speed, while a stop needs no time at that
+    assert blended.duration <= exact.duration * 1.06 + 0.03 * len(program.moves)
