@@ -260,6 +260,8 @@ class Compensator:
         GougeError
             Where a move would go backwards.
         """
+        if not self._waiting:
+            return
         first, second = self._axes
         for entry in self._waiting:
             if isinstance(entry, _Move):
@@ -278,6 +280,12 @@ class Compensator:
             Where a move would go backwards, because the corner before it left no room.
         """
         self._end_at(self._centre)
+        self._reached = None
+
+    def forget(self) -> None:
+        """Drop all that waits, after an error."""
+        self._waiting.clear()
+        self._reached = None
 
     def flush(self) -> None:
         """Send all that waits, as it is."""

@@ -11,10 +11,13 @@ from typing import TYPE_CHECKING, cast
 from trochia.errors import ModalConflictError, ParseError
 from trochia.languages.gcode.codes import Code, Handler, WordCode, table
 from trochia.languages.gcode.compensator import Compensator, GougeError
+from trochia.languages.gcode.groups.tool import slot_of
 from trochia.languages.gcode.numbers import as_integer
 from trochia.program.modes import Plane
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from trochia.languages.gcode.block import Block
     from trochia.languages.gcode.sink import Sink
     from trochia.languages.gcode.state import State
@@ -26,6 +29,7 @@ NOT_NOW = frozenset({
     "G61", "G61.1", "G64", "G73", "G74", "G76", "G81", "G82", "G83", "G84", "G85", "G86", "G87", "G88", "G89", "G92",
     "G98", "G99", "M6", "M48", "M49", "M50", "M51", "M52", "M53", "M62", "M63", "M64", "M65", "M66", "M67", "M68",
 })  # fmt: skip
+MOST_ORIENTATION = 9
 PLANE_CODES = {"G17": Plane.XY, "G18": Plane.ZX, "G19": Plane.YZ}
 
 
@@ -39,7 +43,7 @@ def off(block: Block, state: State, sink: Sink) -> None:
     sink.comment("interpreter: cutter radius compensation off")
 
 
-def _on(name: str, side: int) -> Handler:
+def _on(name: str, side: int, given: Callable[[Block, State, str], tuple[float, int]]) -> Handler:
     def on(block: Block, state: State, sink: Sink) -> None:
         if state.plane == Plane.YZ:
             raise block.fault(ModalConflictError, "cutter compensation works in the XY and the ZX plane", name,
@@ -47,7 +51,11 @@ def _on(name: str, side: int) -> Handler:
         if state.compensation is not None:
             raise block.fault(ModalConflictError, "cutter compensation is on already", name,
                               hint="Switch it off before, by G40 and a straight move.")  # fmt: skip
-        diameter, orientation = _given(block, state, name)
+        diameter, orientation = given(block, state, name)
+        if orientation and state.plane != Plane.ZX:
+            raise block.fault(ModalConflictError, "a lathe tool's orientation needs the ZX plane",
+                              "l" if "l" in block.values and name.endswith(".1") else name,
+                              hint="Select G18, or a tool without orientation.")  # fmt: skip
         actual = side if diameter >= 0 else -side
         sink.comment(f"interpreter: cutter radius compensation on {'left' if actual > 0 else 'right'}")
         state.compensation = Compensator(sink, state.position, plane=state.plane, side=actual,
@@ -56,19 +64,32 @@ def _on(name: str, side: int) -> Handler:
     return on
 
 
-def _given(block: Block, state: State, name: str) -> tuple[float, int]:
+def _of_words(block: Block, state: State, name: str) -> tuple[float, int]:
     """Return diameter [program units] and orientation from the words D and L."""
     if "d" not in block.values:
         raise block.fault(ParseError, f"{name} needs the tool's diameter", name, hint=f"Write D: {name} D6.")
     if "l" not in block.values:
         return block.values["d"], 0
     orientation = as_integer(block.values["l"])
-    if orientation is None or not 0 <= orientation <= 9:
+    if orientation is None or not 0 <= orientation <= MOST_ORIENTATION:
         raise block.fault(ParseError, "L is the orientation of a lathe tool, 0 to 9", "l")
     if state.plane != Plane.ZX:
         raise block.fault(ModalConflictError, "a lathe tool's orientation (L) needs the ZX plane", "l",
                           hint="Select G18, or leave L out.")  # fmt: skip
     return block.values["d"], orientation
+
+
+def _of_table(block: Block, state: State, name: str) -> tuple[float, int]:
+    """Return diameter [program units] and orientation of tool D, or of the tool in the spindle."""
+    number = as_integer(block.values.get("d", 0.0))
+    if number is None or number < 0:
+        raise block.fault(ParseError, f"D of {name} is the number of a tool", "d",
+                          hint=f"{name}.1 takes the diameter itself.")  # fmt: skip
+    if state.tools is None:
+        raise block.fault(ModalConflictError, f"{name} needs a tool table", name,
+                          hint=f"Name one (--tools FILE), or write the diameter: {name}.1 D6.")  # fmt: skip
+    tool = state.in_spindle if number == 0 else state.tools[slot_of(number, block, state, "d") - 1]
+    return tool.diameter / state.scale, tool.orientation
 
 
 def run_compensated(part: Code | WordCode, block: Block, state: State, sink: Sink) -> None:
@@ -86,6 +107,8 @@ def run_compensated(part: Code | WordCode, block: Block, state: State, sink: Sin
     try:
         part.run(block, state, sink_of(state, sink))
     except GougeError as error:
+        if state.compensation is not None:
+            state.compensation.forget()
         raise block.fault(ModalConflictError, error.message, block.mover, hint=error.hint) from error
 
 
@@ -105,8 +128,12 @@ def _check_allowed(code: Code, block: Block, state: State) -> None:
 
 G_CODES = table(
     Code(name="G40", about="no cutter compensation", group="compensation", step="compensation", run=off),
+    Code(name="G41", about="tool D of the table left of the path", group="compensation", step="compensation",
+         run=_on("G41", +1, _of_table), words="dl"),
+    Code(name="G42", about="tool D of the table right of the path", group="compensation", step="compensation",
+         run=_on("G42", -1, _of_table), words="dl"),
     Code(name="G41.1", about="tool of diameter D left of the path", group="compensation", step="compensation",
-         run=_on("G41.1", +1), words="dl"),
+         run=_on("G41.1", +1, _of_words), words="dl"),
     Code(name="G42.1", about="tool of diameter D right of the path", group="compensation", step="compensation",
-         run=_on("G42.1", -1), words="dl"),
+         run=_on("G42.1", -1, _of_words), words="dl"),
 )  # fmt: skip
