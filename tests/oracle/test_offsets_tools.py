@@ -66,8 +66,8 @@ WRONG = _of(
     "m61", "m61 q77", "t9", "g43 h5", "g10 l3 p1", "g10 l2 p11 x1", "g10 l20 p1 x1 r1", "g10 l1 p3 z1", "g10 l1 p1",
     "m62", "m67 q1", "m66", "m66 p1 l2", "m19 r400", "m3 $1", "g96", "m19 r1 p3", "m100", "g52", "m48 m50",
     "g10 l1 p1 q11", "m19 r1 q0", "g43.2", "g43.2 x1", "g10 l2 p1 i1", "$1", "g1 f1 x1 $0", "l2", "d1", "e1",
-    "m6 m61 q1", "g43 h1.5", "g43 h-1", "g10 l1.5 p1 x1", "m66 p1 e1", "m66 e1 l1 q1", "g10 l10 p1", "g43 g49", "m62 p1 m64 p2",
-    "g10 l2 p1 x1 g0",
+    "m6 m61 q1", "g43 h1.5", "g43 h-1", "g10 l1.5 p1 x1", "m66 p1 e1", "m66 e1 l1 q1", "g10 l10 p1", "g43 g49",
+    "m62 p1 m64 p2", "g10 l2 p1 x1 g0",
 )  # fmt: skip
 GOOD = st.one_of(ORIGINS, LENGTHS, MOVES, MODES, MACHINE)
 

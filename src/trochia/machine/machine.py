@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from trochia.machine.axes import LETTERS, PathLimits
 from trochia.machine.checks import check
-from trochia.machine.codecs import Quantity, Text
+from trochia.machine.codecs import Flag, Quantity, Text
 from trochia.machine.io import Beam, Spindle
 from trochia.machine.schema import Bound, Record, check_bounds, key
 
@@ -33,6 +33,10 @@ class Machine:
         Period of set-points and recordings [s].
     tool_change_time
         What a tool change costs [s].
+    tools, parameters
+        Files that G-code programs find set up, in LinuxCNC's formats; paths are relative to the machine file.
+    allow_user_m_codes
+        Whether M100 to M199 may be called.
     profile
         Velocity profile the machine asks for, a name of :data:`PROFILES`; None leaves it to the planner.
 
@@ -59,6 +63,15 @@ class Machine:
     )
     tool_change_time: float = field(
         default=0.0, metadata=key(Quantity("time"), "what a tool change costs", Bound.NOT_NEGATIVE)
+    )
+    tools: str | None = field(
+        default=None, metadata=key(Text(), "tool table in LinuxCNC's .tbl format, beside the machine file")
+    )
+    parameters: str | None = field(
+        default=None, metadata=key(Text(), "offsets and variables in LinuxCNC's .var format, beside the machine file")
+    )
+    allow_user_m_codes: bool = field(
+        default=False, metadata=key(Flag(), "M100 to M199 of G-code programs are codes of this machine")
     )
     profile: str | None = field(
         default=None, metadata=key(Text(PROFILES), "velocity profile; the planner's own choice if not given")

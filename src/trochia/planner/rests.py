@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -47,6 +48,8 @@ def rests_of(program: Program, machine: Machine, path: Toolpath) -> Rests:
         elif isinstance(action, ToolChange):
             found.append((action.at, "tool", machine.tool_change_time))
         elif isinstance(action, Spindle):
+            if speed and 0 < action.at <= len(program.moves):  # S may have changed while it turned
+                speed = math.copysign(float(program.moves["power"][action.at - 1]), speed)
             asked = action.direction * action.speed
             found.append((action.at, "spindle", _spin_up(machine.spindle, speed, asked)))
             speed = asked

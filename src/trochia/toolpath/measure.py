@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from trochia.program import Spindle, TimeLaw
 from trochia.toolpath.build import build
 from trochia.toolpath.toolpath import SegmentKind
 
@@ -86,17 +85,12 @@ def _widest(bounds: list[NDArray[np.float64]]) -> NDArray[np.float64]:
 def _parts(program: Program) -> Iterator[Program]:
     """Yield the program in parts of a bounded number of moves; one part at least.
 
-    Of the actions only the spindle's are kept, and only where a feed per revolution asks for them.
+    Actions are left out: they change the time, not the size.
     """
     start = program.start
     for first in range(0, max(len(program.moves), 1), _PART):
         moves = program.moves[first : first + _PART]
-        spindle: tuple[Spindle, ...] = ()
-        if (moves["law"] == TimeLaw.PER_REV).any():
-            until = first + len(moves)
-            before = [action for action in program.actions if isinstance(action, Spindle) and action.at <= until]
-            spindle = tuple(replace(action, at=max(action.at - first, 0)) for action in before)
-        yield replace(program, moves=moves, start=start, actions=spindle)
+        yield replace(program, moves=moves, start=start, actions=())
         start = moves["target"][-1] if len(moves) else start
 
 
