@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -44,7 +43,7 @@ def build(program: Program, machine: Machine, *, blend: bool = True, continuity:
     _refuse_missing_axes(program, machine)
     columns = machine.columns
     segments, pool, fault = kernel.build(
-        program.moves, _rests(program), _spindle_speeds(program), start=program.start, columns=columns,
+        program.moves, _rests(program, machine), _spindle_speeds(program), start=program.start, columns=columns,
         tolerance=machine.path_tolerance if blend else -1.0, continuity=continuity, limits=_limits(machine),
     )  # fmt: skip
     if fault:
@@ -59,10 +58,16 @@ def _limits(machine: Machine) -> NDArray[np.float64]:
     return np.array(rows, dtype=np.float64).T
 
 
-def _rests(program: Program) -> NDArray[np.uint8]:
-    """Return 1 for each move before which an action stands (moves,)."""
+def _rests(program: Program, machine: Machine) -> NDArray[np.uint8]:
+    """Return 1 for each move before which motion rests for an action (moves,).
+
+    A beam is switched while the axes move; only a spindle needs time to start, stop and turn round.
+    """
+    beam = machine.spindle is None and machine.beam is not None
     rests = np.zeros(len(program.moves) + 1, dtype=np.uint8)
-    rests[[action.at for action in program.actions]] = 1
+    rests[[
+        action.at for action in program.actions if action.at_rest and not (beam and isinstance(action, Spindle))
+    ]] = 1  # fmt: skip
     return rests[:-1]
 
 
@@ -70,11 +75,7 @@ def _spindle_speeds(program: Program) -> NDArray[np.float64] | None:
     """Return the nominal spindle speed at each move (moves,) [rev/min]; None when no feed asks for it."""
     if not (program.moves["law"] == TimeLaw.PER_REV).any():
         return None
-    speeds = np.zeros(len(program.moves))
-    changes = [(a.at, abs(a.speed) if a.direction else 0.0) for a in program.actions if isinstance(a, Spindle)]
-    for (at, speed), (until, _) in pairwise([*changes, (len(speeds), 0.0)]):
-        speeds[at:until] = speed
-    return speeds
+    return np.ascontiguousarray(program.moves["power"])
 
 
 def _refuse_missing_axes(program: Program, machine: Machine) -> None:
