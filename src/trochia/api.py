@@ -16,7 +16,7 @@ from trochia.analysis.travel import shift_that_fits, travel_error
 from trochia.errors import OutOfTravelError, PlanningError, ProgramError
 from trochia.languages import gcode as language
 from trochia.machine.load import load
-from trochia.program import AXES, WorkState
+from trochia.program import AXES
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -32,7 +32,12 @@ __all__ = ["Plan", "Verdict", "check", "gcode", "load", "plan", "read", "simulat
 
 
 def gcode(
-    text: str | bytes, machine: Machine | None = None, *, at: Place | None = None, name: str = "<text>"
+    text: str | bytes,
+    machine: Machine | None = None,
+    *,
+    at: Place | None = None,
+    name: str = "<text>",
+    reading: language.Reading | None = None,
 ) -> Program:
     """Return the program of a G-code text, in machine coordinates.
 
@@ -42,14 +47,17 @@ def gcode(
         Where it will run; motion begins at its zero, or where its travel comes nearest to that.
     at
         Offset of the program's zero, {axis: mm or degree}.
+    reading
+        How programs are read: folders of subroutines, bounds.
 
     Raises
     ------
     ProgramError
         At the first wrong line, with what to do about it.
     """
-    work = WorkState().placed(**(at or {}))
-    return language.read(text, name=name, work=work, start=_start(machine))
+    reading = reading or language.Reading()
+    work = reading.work.placed(**(at or {}))
+    return language.read(text, name=name, work=work, start=_start(machine), reading=reading)
 
 
 def read(path: str | Path, machine: Machine | None = None, *, at: Place | None = None) -> Program:
@@ -82,6 +90,7 @@ def check(
     name: str = "<text>",
     profile: str | None = None,
     first_only: bool = True,
+    reading: language.Reading | None = None,
 ) -> Verdict:
     """Return whether a G-code text will run on a machine: errors, warnings, margins, time.
 
@@ -89,19 +98,22 @@ def check(
     ----------
     first_only
         Report the first bad line and how many more there are, not all of them.
+    reading
+        As in :func:`gcode`.
     """
     try:
-        made = make(gcode(text, machine, at=at, name=name), machine, profile=profile)
+        made = make(gcode(text, machine, at=at, name=name, reading=reading), machine, profile=profile)
     except ProgramError:
-        work = WorkState().placed(**(at or {}))
-        errors = language.problems(text, name=name, work=work, start=_start(machine))
+        reading = replace(reading or language.Reading(), on_end=None)
+        work = reading.work.placed(**(at or {}))
+        errors = language.problems(text, name=name, work=work, start=_start(machine), reading=reading)
         found = tuple(from_error(error, name) for error in errors)
         return Verdict(problems=found[:1], more=len(found) - 1) if first_only else Verdict(problems=found)
     except PlanningError as error:
         return Verdict(problems=(from_error(error, name),))
     verdict = judge(made)
     if verdict.problems and verdict.problems[0].code == OutOfTravelError.code:
-        hint = _where_it_fits(text, made, at or {}, profile)
+        hint = _where_it_fits(text, made, at or {}, profile, reading)
         verdict = replace(verdict, problems=(replace(verdict.problems[0], hint=hint), *verdict.problems[1:]))
     return verdict
 
@@ -136,15 +148,18 @@ def _start(machine: Machine | None) -> tuple[float, ...]:
     return tuple(start.values())
 
 
-def _where_it_fits(text: str | bytes, made: Plan, at: Place, profile: str | None) -> str:
+def _where_it_fits(
+    text: str | bytes, made: Plan, at: Place, profile: str | None, reading: language.Reading | None
+) -> str:
     """Return the offset at which a program would fit, tried before it is said."""
+    reading = replace(reading or language.Reading(), on_end=None)  # a trial leaves nothing behind
     shift = shift_that_fits(made)
     if shift is None:
         return "The part is larger than the travel: no offset makes it fit."
     place = dict(at)
     for axis, value in shift.items():
         place[axis] = place.get(axis, 0.0) + value
-    moved = make(gcode(text, made.machine, at=place), made.machine, profile=profile)
+    moved = make(gcode(text, made.machine, at=place, reading=reading), made.machine, profile=profile)
     if travel_error(moved) is not None:
         return "An offset does not help: the program moves in machine or incremental coordinates."
     words = "".join(f"{axis}{value:g}" for axis, value in sorted(place.items(), key=lambda pair: AXES.index(pair[0])))

@@ -6,11 +6,15 @@ import io
 import os
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from trochia.cli import options
 from trochia.files import whole_file
+
+if TYPE_CHECKING:
+    from trochia.languages.gcode.reading import Reading
 
 
 @click.command()
@@ -18,8 +22,9 @@ from trochia.files import whole_file
 @click.option("-o", "--output", type=click.Path(dir_okay=False, writable=True), metavar="FILE",
               help="Write to a file, whole or not at all, instead of standard output.")  # fmt: skip
 @click.option("--block-delete", is_flag=True, help="Leave out lines that begin with /.")
+@options.reading
 @options.as_json
-def command(program: str, output: str | None, block_delete: bool, as_json: bool) -> None:
+def command(*, program: str, output: str | None, block_delete: bool, as_json: bool, reading: Reading) -> None:
     """Print the canonical commands of PROGRAM (- reads standard input).
 
     They are spelt as LinuxCNC's stand-alone interpreter does (`rs274 -g`, without its first two columns), in program
@@ -32,19 +37,19 @@ def command(program: str, output: str | None, block_delete: bool, as_json: bool)
     name = "<stdin>" if program == "-" else program
     text = sys.stdin.buffer.read() if program == "-" else Path(program).read_bytes()
     if as_json:
-        _print_json(text, name, block_delete=block_delete)
+        _print_json(text, name, block_delete=block_delete, reading=reading)
     elif output is not None:
         with whole_file(Path(output)) as out:
-            print_text(text, out, name=name, block_delete=block_delete)
+            print_text(text, out, name=name, block_delete=block_delete, reading=reading)
     else:
         try:
-            print_text(text, sys.stdout.buffer, name=name, block_delete=block_delete)
+            print_text(text, sys.stdout.buffer, name=name, block_delete=block_delete, reading=reading)
             sys.stdout.flush()
         except BrokenPipeError:  # the reader has seen enough
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
-def _print_json(text: bytes, name: str, *, block_delete: bool) -> None:
+def _print_json(text: bytes, name: str, *, block_delete: bool, reading: Reading) -> None:
     """Print ``{ok, commands, problems}``; a rejected program has the commands before its first wrong line."""
     from dataclasses import asdict  # noqa: PLC0415 - as above
 
@@ -54,7 +59,7 @@ def _print_json(text: bytes, name: str, *, block_delete: bool) -> None:
 
     out, problems = io.BytesIO(), []
     try:
-        print_text(text, out, name=name, block_delete=block_delete)
+        print_text(text, out, name=name, block_delete=block_delete, reading=reading)
     except ProgramError as error:
         problems = [asdict(from_error(error, name))]
     commands = out.getvalue().decode("latin-1").split("\n")[:-1]

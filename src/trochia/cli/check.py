@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from typing import TYPE_CHECKING
 
 import click
 
@@ -10,20 +11,24 @@ from trochia.cli import options
 from trochia.cli.job import judge
 from trochia.cli.tables import clock, show_verdict
 
+if TYPE_CHECKING:
+    from trochia.languages.gcode import Reading
+
 
 @click.command()
 @options.common
 @click.option("--all", "show_all", is_flag=True, help="Report every bad line, not only the first.")
 def command(
-    *, program: str, machine_name: str, place: dict[str, float], profile: str | None, as_json: bool, show_all: bool
-) -> None:
+    *, program: str, machine_name: str, place: dict[str, float], profile: str | None, as_json: bool, reading: Reading,
+    show_all: bool,
+) -> None:  # fmt: skip
     """Will it run?  Language, travel, limits; names the first bad line.
 
     Nothing is simulated; exit code 0 says yes (warnings included), 1 no.
 
     Example: trochia check part.ngc -m router --at X10Y20
     """
-    job = judge(program, machine_name, place, profile, first_only=not show_all)
+    job = judge(program, machine_name, place, profile, reading=reading, first_only=not show_all)
     if as_json:
         options.print_json(job.verdict.figures())
     else:

@@ -7,13 +7,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import click
+
 from trochia import api
 from trochia.cli.progress import Progress
+from trochia.program import Message
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from trochia.analysis.check import Verdict
+    from trochia.languages.gcode import Reading
     from trochia.machine.machine import Machine
 
 
@@ -28,7 +32,13 @@ class Job:
 
 
 def judge(
-    program: str, machine_name: str, place: Mapping[str, float], profile: str | None, *, first_only: bool = True
+    program: str,
+    machine_name: str,
+    place: Mapping[str, float],
+    profile: str | None,
+    *,
+    reading: Reading,
+    first_only: bool = True,
 ) -> Job:
     """Read the program (``-`` is standard input) and the machine, and judge the one on the other."""
     machine = api.load(machine_name)
@@ -36,5 +46,15 @@ def judge(
     with Progress() as progress:
         progress("reading", 0.0)
         text = sys.stdin.buffer.read() if program == "-" else Path(program).read_bytes()
-        verdict = api.check(text, machine, at=place, name=name, profile=profile, first_only=first_only)
+        verdict = api.check(text, machine, at=place, name=name, profile=profile, first_only=first_only, reading=reading)
+    show_messages(verdict)
     return Job(name=name, text=text, machine=machine, verdict=verdict)
+
+
+def show_messages(verdict: Verdict) -> None:
+    """Print what the program says to its operator, on standard error."""
+    if verdict.plan is None:
+        return
+    for action in verdict.plan.program.actions:
+        if isinstance(action, Message):
+            click.echo(f"line {action.line}: {action.text}", err=True)

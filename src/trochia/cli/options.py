@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import functools
 import re
 import sys
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from trochia import units
+from trochia.cli import setup
 from trochia.errors import UnitError
 
 if TYPE_CHECKING:
@@ -61,9 +64,38 @@ at = click.option(
 )  # fmt: skip
 
 
+def reading(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Add the options that say how a G-code program is read; the command gets them as ``reading``."""
+    command = setup.files(command)
+
+    @functools.wraps(command)
+    def with_reading(*, subroutines: tuple[Path, ...], max_lines: int | None, **values: Any) -> Any:  # noqa: ANN401 - click's
+        from trochia.languages.gcode.reading import MOST_LINES, Reading  # noqa: PLC0415 - `trochia --help` must stay light
+
+        program = str(values.get("program", "-"))
+        own = () if program == "-" else (Path(program).parent,)
+        return command(reading=Reading(subroutines=subroutines or own, most_lines=max_lines or MOST_LINES), **values)
+
+    decorated = click.option(
+        "--max-lines", type=click.IntRange(min=1), metavar="N",
+        help="Lines a program may execute before its loops count as endless; ten millions unless given.",
+    )(with_reading)  # fmt: skip
+    return click.option(
+        "--subroutines", multiple=True, metavar="DIR", type=click.Path(exists=True, file_okay=False, path_type=Path),
+        help="Folder of files with subroutines (again for more); without it the program's own.",
+    )(decorated)  # fmt: skip
+
+
 def common(command: Callable[..., Any]) -> Callable[..., Any]:
     """Add the argument PROGRAM and the options every planning command has."""
-    for decorate in (as_json, profile, at, machine, click.argument("program", metavar="PROGRAM", type=type_program)):
+    for decorate in (
+        reading,
+        as_json,
+        profile,
+        at,
+        machine,
+        click.argument("program", metavar="PROGRAM", type=type_program),
+    ):
         command = decorate(command)
     return command
 

@@ -15,6 +15,7 @@ from trochia.program.source import SourceText
 
 if TYPE_CHECKING:
     from trochia.analysis.plan import Plan
+    from trochia.languages.gcode import Reading
 
 
 @click.command()
@@ -22,13 +23,14 @@ if TYPE_CHECKING:
 @click.option("--lines", "line_count", type=click.IntRange(min=0), default=5, show_default=True,
               help="How many of the slowest lines to list; with --json, 0 lists all lines.")  # fmt: skip
 def command(
-    *, program: str, machine_name: str, place: dict[str, float], profile: str | None, as_json: bool, line_count: int
-) -> None:
+    *, program: str, machine_name: str, place: dict[str, float], profile: str | None, as_json: bool, reading: Reading,
+    line_count: int,
+) -> None:  # fmt: skip
     """Time, length, extents and per-line timing of a program.
 
     Example: trochia plan part.ngc -m reference-mill --json
     """
-    job = judge(program, machine_name, place, profile)
+    job = judge(program, machine_name, place, profile, reading=reading)
     plan = job.verdict.plan
     if plan is None or not job.verdict.ok:
         show_verdict(job.verdict)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
@@ -12,6 +13,9 @@ from trochia.cli import options
 from trochia.cli.job import judge
 from trochia.cli.tables import show_plan, show_verdict
 from trochia.errors import UnitError
+
+if TYPE_CHECKING:
+    from trochia.languages.gcode import Reading
 
 
 def _period(_context: click.Context, _parameter: click.Parameter, value: str | None) -> float | None:
@@ -35,7 +39,7 @@ def _period(_context: click.Context, _parameter: click.Parameter, value: str | N
 @click.option("--rate", "period", callback=_period, metavar="TIME|FREQUENCY",
               help="Sampling of the recording; without it the machine's servo period.")  # fmt: skip
 def command(
-    *, program: str, machine_name: str, place: dict[str, float], profile: str | None, as_json: bool,
+    *, program: str, machine_name: str, place: dict[str, float], profile: str | None, as_json: bool, reading: Reading,
     output: Path, period: float | None,
 ) -> None:  # fmt: skip
     """Run a program on the digital twin: recording and report.
@@ -47,7 +51,7 @@ def command(
     from trochia.analysis.prove import prove  # noqa: PLC0415 - plots and twin load only when asked for
     from trochia.cli.progress import Progress  # noqa: PLC0415
 
-    job = judge(program, machine_name, place, profile)
+    job = judge(program, machine_name, place, profile, reading=reading)
     if job.verdict.plan is None or not job.verdict.ok:
         if as_json:
             options.print_json(job.verdict.figures())

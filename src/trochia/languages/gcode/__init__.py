@@ -10,12 +10,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from trochia.languages.gcode.interpreter import HOME, blocks, interpret
+from trochia.languages.gcode.reading import USUAL, Reading
 
 if TYPE_CHECKING:
     from trochia.errors import ProgramError
     from trochia.program import Program, WorkState
 
-__all__ = ["ALL_AXES", "MOST_PROBLEMS", "blocks", "interpret", "problems", "read"]
+__all__ = ["ALL_AXES", "MOST_PROBLEMS", "Reading", "blocks", "interpret", "problems", "read"]
 
 ALL_AXES = "XYZABCUVW"
 MOST_PROBLEMS = 10_000  #: after so many, a text is no part program, and reading it further helps nobody
@@ -29,6 +30,7 @@ def read(
     start: tuple[float, ...] = HOME,
     axes: str = ALL_AXES,
     block_delete: bool = False,
+    reading: Reading = USUAL,
 ) -> Program:
     """Return the program of a text, in machine coordinates.
 
@@ -43,7 +45,9 @@ def read(
 
     data = _as_bytes(text)
     sink = Builder(name, start, room=data.count(b"\n") + 1)
-    lines = interpret(data, sink, name=name, work=work, start=start, axes=axes, block_delete=block_delete)
+    lines = interpret(
+        data, sink, name=name, work=work, start=start, axes=axes, block_delete=block_delete, reading=reading
+    )
     return sink.program(lines)
 
 
@@ -55,6 +59,7 @@ def problems(
     start: tuple[float, ...] = HOME,
     axes: str = ALL_AXES,
     block_delete: bool = False,
+    reading: Reading = USUAL,
 ) -> list[ProgramError]:
     """Return every wrong line of a text, at most :data:`MOST_PROBLEMS`; an empty list means it can be read.
 
@@ -67,7 +72,7 @@ def problems(
     sink = Builder(name, start)
     walk = blocks(
         _as_bytes(text), sink, name=name, work=work, start=start, axes=axes, block_delete=block_delete,
-        on_error=found.append,
+        reading=reading, on_error=found.append,
     )  # fmt: skip
     try:
         for _ in walk:

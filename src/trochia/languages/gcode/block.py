@@ -16,7 +16,7 @@ from trochia.languages.gcode.registry import G_CODES, G_TENTH, M_CODES, MOST_M_C
 if TYPE_CHECKING:
     from trochia.languages.gcode.codes import Code, WordCode
     from trochia.languages.gcode.place import Place
-    from trochia.languages.gcode.reader import Line, Word
+    from trochia.languages.gcode.template import Line, Word
 
 _Error = TypeVar("_Error", bound=ProgramError)
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from trochia.kernels.gcode import COMMENT_ROW, FEED_ROW
 from trochia.languages.gcode.frames import scaled
 from trochia.languages.gcode.interpreter import interpret
+from trochia.languages.gcode.reading import USUAL
 from trochia.languages.gcode.state import INCH
 from trochia.program.modes import MoveKind, PathMode, Plane, TimeLaw
 
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from typing import BinaryIO
 
     from trochia.kernels.gcode import Rows
+    from trochia.languages.gcode.reading import Reading
     from trochia.languages.gcode.sink import Position
     from trochia.program import Tool
 
@@ -36,7 +38,9 @@ _NO_BOUND = 1e30  # rpm, of a constant surface speed without D
 _TOOL_OFFSET = "USE_TOOL_LENGTH_OFFSET(%.4f %.4f %.4f, %.4f %.4f %.4f, %.4f %.4f %.4f)\n"
 
 
-def print_text(text: bytes, out: BinaryIO, *, name: str, block_delete: bool = False) -> None:
+def print_text(
+    text: bytes, out: BinaryIO, *, name: str, block_delete: bool = False, reading: Reading = USUAL
+) -> None:
     """Write the canonical functions of a program.
 
     Raises
@@ -44,7 +48,7 @@ def print_text(text: bytes, out: BinaryIO, *, name: str, block_delete: bool = Fa
     ProgramError
         At the first line that is wrong; what came before it has been written.
     """
-    interpret(text, Canon(out.write), name=name, block_delete=block_delete)
+    interpret(text, Canon(out.write), name=name, block_delete=block_delete, reading=reading)
 
 
 def print_program(path: Path, out: BinaryIO) -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from trochia.errors import ParseError, UnknownCodeError
+from trochia.errors import ParseError
 
 if TYPE_CHECKING:
     from trochia.languages.gcode.place import Place
@@ -25,8 +25,6 @@ def read_number(text: str, at: int, place: Place) -> tuple[float, int]:
     ------
     ParseError
         Where no number stands.
-    UnknownCodeError
-        Where a parameter or an expression stands.
     """
     match = _NUMBER.match(text, at)
     assert match is not None  # the pattern matches nothing at all, too
@@ -42,14 +40,14 @@ def read_number(text: str, at: int, place: Place) -> tuple[float, int]:
     return (-value if found.count("-") % 2 else value), match.end()
 
 
-def _no_number(text: str, at: int, digits: str, place: Place) -> ParseError | UnknownCodeError:
+def _no_number(text: str, at: int, digits: str, place: Place) -> ParseError:
     """Return the error that says why no number could be read at ``at``."""
-    if not digits and text[at : at + 1] in ("#", "["):
-        return place.fault(UnknownCodeError, "parameters and expressions are not known here", at,
-                           hint="Write the number itself.")  # fmt: skip
     if digits:
         return place.fault(ParseError, f"{digits!r} is no number", at, hint="A number has at most one decimal point.")
     word = text[at - 1].upper() if at else ""
+    if not word.isalpha():
+        return place.fault(ParseError, f"a value is missing behind {word!r}", max(at - 1, 0),
+                           hint="A value is a number, #parameter, [expression] or a function: SIN[30].")  # fmt: skip
     return place.fault(ParseError, f"the word {word} has no number", at - 1, hint=f"Write a number after {word}.")
 
 

@@ -33,7 +33,7 @@ class Computed(NamedTuple):
 class Frame(NamedTuple):
     """What a call keeps for its return: the arguments and the local names of the caller."""
 
-    arguments: list[float]
+    arguments: list[float] | None
     names: dict[str, float]
 
 
@@ -157,16 +157,23 @@ class Parameters:
 
     # --- by call
 
-    def enter(self, arguments: list[float]) -> Frame:
-        """Give a called subroutine its arguments, #1 to #30, and no names; return what its end must restore."""
-        frame = Frame(self.numbered[1 : ARGUMENTS + 1], self.local)
-        self.numbered[1 : ARGUMENTS + 1] = arguments + [0.0] * (ARGUMENTS - len(arguments))
+    def enter(self, arguments: list[float] | None) -> Frame:
+        """Give a called subroutine its arguments, #1 to #30, and no names; return what its end must restore.
+
+        Without arguments (M98) it shares #1 to #30 with its caller.
+        """
+        if arguments is None:
+            frame = Frame(None, self.local)
+        else:
+            frame = Frame(self.numbered[1 : ARGUMENTS + 1], self.local)
+            self.numbered[1 : ARGUMENTS + 1] = arguments + [0.0] * (ARGUMENTS - len(arguments))
         self.local = {}
         return frame
 
     def leave(self, frame: Frame) -> None:
         """Restore the caller's arguments and names."""
-        self.numbered[1 : ARGUMENTS + 1] = frame.arguments
+        if frame.arguments is not None:
+            self.numbered[1 : ARGUMENTS + 1] = frame.arguments
         self.local = frame.names
 
 

@@ -1,7 +1,7 @@
 """One line of text to words.
 
-In: the raw bytes of a line.  Out: :class:`Line`: words in their order (letter, value, index into the
-compact line), and the last comment.  Nothing here knows what a word means.
+In: the raw bytes of a line.  Out: a :class:`~trochia.languages.gcode.template.Template`: words and assignments in
+their order, the last comment, and the O-word.  Nothing here knows what a word means.
 
 RS274 reads a line without its blanks and without regard to case; ``( )`` and ``;`` hold comments.
 """
@@ -9,40 +9,39 @@ RS274 reads a line without its blanks and without regard to case; ``( )`` and ``
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 
 from trochia.errors import ParseError, UnknownCodeError
-from trochia.languages.gcode.numbers import read_number
+from trochia.languages.gcode.expression import Expressions
+from trochia.languages.gcode.owords import read_control, read_program_control
+from trochia.languages.gcode.parameters import Parameters
 from trochia.languages.gcode.place import BLANKS, Place
+from trochia.languages.gcode.template import Item, Line, Template
 
 LONGEST_LINE = 252  #: characters a line may have, its end not counted
 
-Word = tuple[str, float, int]  #: letter in lower case, value, index of the letter in the compact line
-
 _LINE_NUMBER = re.compile(r"n[0-9]+(?:\.[0-9]+)?")
 _COMMENT = re.compile(rb"\(([^()]*)\)")
-_LATER = {"#": "parameters", "o": "subroutines and loops (O-words)", "@": "polar words", "^": "polar words",
-          "$": "spindle numbers", "[": "expressions"}  # fmt: skip
+_LATER = {"@": "polar words", "^": "polar words"}
 _HINTS = {
     "/": "Block delete stands at the beginning of the line.",
     "n": "A line number is the first word of its line: N10.",
+    "o": "An O-word stands first on its line.",
+    "[": "A value stands behind its word: X[1 + 2].",
+    "=": "A value is set like #1 = 2.",
     "%": "A line % ends a program only if the program begins with one.",
     ")": "There is no ( before it.",
     "\xef": "Save the file without a byte order mark.",
 }
 
 
-@dataclass(slots=True)
-class Line:
-    """A line taken apart.  ``comment`` is the text between the last pair of brackets, leading blanks left out."""
-
-    place: Place
-    words: list[Word]
-    comment: str | None
+def read_line(place: Place, parameters: Parameters | None = None) -> Line:
+    """Return the words and the comment of a line, with the values it has now; errors are those of its parts."""
+    store = parameters or Parameters()
+    return read_template(place, store).fill(store)
 
 
-def read_line(place: Place) -> Line:
-    """Return the words and the comment of a line.
+def read_template(place: Place, parameters: Parameters) -> Template:
+    """Return a line taken apart.
 
     Raises
     ------
@@ -51,34 +50,61 @@ def read_line(place: Place) -> Line:
     UnknownCodeError
         For a word this release does not have.
     """
+    raw, comment = check_comments(place)
+    text = raw.translate(None, BLANKS).lower().decode("latin-1")
+    at = 1 if text[:1] == "/" else 0  # block delete is off, or the line would not be read
+    number = _LINE_NUMBER.match(text, at)
+    at = number.end() if number else at
+    if text[at : at + 1] == "o":
+        return Template(place, [], comment, read_control(text, at, place, parameters))
+    items = _items(text, at, Expressions(text, place, parameters), place)
+    return Template(place, items, comment, read_program_control(items, place))
+
+
+def check_comments(place: Place) -> tuple[bytes, str | None]:
+    """Return the line with each comment shortened to ``()``, and the last comment.
+
+    Raises
+    ------
+    ParseError
+        For a line that is too long, and a comment that is not closed or nested.
+    """
     raw = place.raw.rstrip()
     if len(place.raw.rstrip(b"\n")) > LONGEST_LINE:
         raise place.fault(ParseError, f"the line is longer than {LONGEST_LINE} characters",
                           hint="Break it, or shorten the comment.")  # fmt: skip
-    comment = None
     if b"(" in raw or b";" in raw:
-        raw, comment = _without_comments(raw, place)
-    text = raw.translate(None, BLANKS).lower().decode("latin-1")
-    at = 1 if text[:1] == "/" else 0  # block delete is off, or the line would not be read
-    number = _LINE_NUMBER.match(text, at)
-    return Line(place, _words(text, number.end() if number else at, place), comment)
+        return _without_comments(raw, place)
+    return raw, None
 
 
-def _words(text: str, at: int, place: Place) -> list[Word]:
-    """Return the words of the compact line from ``at`` on."""
-    words: list[Word] = []
+def _items(text: str, at: int, expressions: Expressions, place: Place) -> list[Item]:
+    """Return the words and assignments of the compact line from ``at`` on."""
+    items: list[Item] = []
     size = len(text)
     while at < size:
         letter = text[at]
         if letter == "(":
             at += 2
-            continue
-        if not "a" <= letter <= "z" or letter in "no":
+        elif letter == "#":
+            item, at = _assignment(text, at, expressions, place)
+            items.append(item)
+        elif not ("a" <= letter <= "z" or letter == "$") or letter in "no":
             raise _bad_character(letter, at, place)
-        value, end = read_number(text, at + 1, place)
-        words.append((letter, value, at))
-        at = end
-    return words
+        else:
+            value, end = expressions.value(at + 1)
+            items.append(Item(letter, value, at))
+            at = end
+    return items
+
+
+def _assignment(text: str, at: int, expressions: Expressions, place: Place) -> tuple[Item, int]:
+    """Return the assignment whose ``#`` stands at ``at``, and where it ends."""
+    target, end = expressions.target(at)
+    if text[end : end + 1] != "=":
+        raise place.fault(ParseError, "= is missing behind the parameter", at, hint="Write it like #1 = 2.")
+    value, after = expressions.value(end + 1)
+    return Item("#", value, at, target), after
 
 
 def _bad_character(letter: str, at: int, place: Place) -> ParseError | UnknownCodeError:

@@ -186,4 +186,5 @@ def work_of(state: State, before: WorkState) -> WorkState:
         tools=None if state.tools is None else tuple(state.tools),
         tool=state.loaded,
         tool_offset=tuple(in_mm(state, state.tool_offset)),
+        variables={number: state.parameters.numbered[number] for number in before.variables},
     )

@@ -134,16 +134,10 @@ def _run(line: str, place: Place, state: State, sink: Sink) -> None:
     ModalConflictError
         At ``place``, where it cannot run.
     """
-    from trochia.languages.gcode.block import sort_words  # noqa: PLC0415 - the tables of codes are made of groups
-    from trochia.languages.gcode.check import check  # noqa: PLC0415 - likewise
-    from trochia.languages.gcode.execution import execute  # noqa: PLC0415 - likewise
-    from trochia.languages.gcode.place import Place  # noqa: PLC0415 - likewise
-    from trochia.languages.gcode.reader import read_line  # noqa: PLC0415 - likewise
+    from trochia.languages.gcode.execution import run_line  # noqa: PLC0415 - it needs the table of codes
 
     try:
-        block = sort_words(read_line(Place(place.file, place.line, line.encode("ascii"))), "")
-        check(block, state)
-        execute(block, state, sink)
+        run_line(line, place, state, sink)
     except ProgramError as error:
         raise place.fault(ModalConflictError, f"the kept modes cannot be brought back by {line}: {error.message}",
                           hint=error.hint) from error  # fmt: skip

@@ -1,0 +1,51 @@
+"""How a program is read, and what it finds set up: what no program says."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from trochia.program.work import WorkState
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+OnEnd = Callable[[WorkState], None]
+
+MOST_LINES = 10_000_000  #: executed lines after which a program counts as endless
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Reading:
+    """How a program is read.
+
+    Attributes
+    ----------
+    subroutines
+        Folders with files that hold subroutines, in the order in which they are looked into.
+    most_lines
+        How many lines a run may execute.
+    work
+        Offsets, tools and variables set up on the machine.
+    startup
+        A line that runs before the program.
+    ini
+        Values of an ini file by section and name, in capitals.
+    on_end
+        Is given what the program leaves set up, when it has come to its end.
+    """
+
+    subroutines: tuple[Path, ...] = ()
+    most_lines: int = MOST_LINES
+    work: WorkState = field(default_factory=WorkState)
+    startup: str = ""
+    ini: Mapping[tuple[str, str], str] = field(default_factory=dict[tuple[str, str], str])
+    on_end: OnEnd | None = None
+
+    def __post_init__(self) -> None:
+        if self.most_lines < 1:
+            raise ValueError(f"most_lines must be at least 1, not {self.most_lines}")
+
+
+USUAL = Reading()  #: no folders, the usual bound
