@@ -77,7 +77,8 @@ typedef struct {
     trochia_segment *segments;
     double *pool;
     uint64_t segment_count, pool_count;
-    uint64_t failed_move; /* row of the move that has no speed (see the result) */
+    uint64_t merged_count; /* moves that others stand for (Q; with continuous curvature) */
+    uint64_t failed_move;  /* row of the move that has no speed (see the result) */
 } trochia_path_output;
 
 /* Returns 0, or 1 when a feed has no rate, or 2 when a feed per revolution finds the spindle at rest. */

@@ -54,6 +54,12 @@ void trochia_start_reader(trochia_reader *r);
  * rest). */
 int32_t trochia_read_curve(trochia_reader *r, uint64_t row, trochia_curve *curve);
 
+/* Makes the line from the reader's position to `target`; length 0 where that is no way. */
+void trochia_read_line(const trochia_reader *r, const double *target, trochia_curve *curve);
+
+/* Reads the move of a row and, where Q allows, those after it as one; `row` becomes that of the next. */
+int32_t trochia_read_merged(trochia_reader *r, uint64_t *row, trochia_curve *curve);
+
 trochia_segment *trochia_append(trochia_reader *r, double length, double speed, uint32_t move, uint8_t kind);
 
 /* Appends `length` of a curve from `cut` on; nothing at all where both blends meet. */

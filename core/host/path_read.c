@@ -47,7 +47,7 @@ static double lead_length(const trochia_frame *frame, const double *step) {
     return 0.0;
 }
 
-static void read_line(const trochia_reader *r, const double *target, trochia_curve *curve) {
+void trochia_read_line(const trochia_reader *r, const double *target, trochia_curve *curve) {
     uint32_t n = r->frame.n;
     double step[9];
     for (uint32_t i = 0; i < n; i++)
@@ -92,7 +92,7 @@ static void read_arc(const trochia_reader *r, const trochia_move *move, const do
     double to0 = target[first] - move->centre[0], to1 = target[second] - move->centre[1];
     double r0 = hypot(from0, from1), r1 = hypot(to0, to1), rise = 0.0;
     if (fmin(r0, r1) < NOTHING) { /* no circle: the way to its end is a line */
-        read_line(r, target, curve);
+        trochia_read_line(r, target, curve);
         return;
     }
     double angle = atan2(from1, from0), sweep = sweep_of(angle, atan2(to1, to0), move->turns);
@@ -151,7 +151,7 @@ int32_t trochia_read_curve(trochia_reader *r, uint64_t row, trochia_curve *curve
     if (move->kind == TROCHIA_ARC)
         read_arc(r, move, target, curve);
     else
-        read_line(r, target, curve);
+        trochia_read_line(r, target, curve);
     if (curve->length == 0.0)
         return 0;
     curve->move = (uint32_t)row;
@@ -217,7 +217,7 @@ void trochia_start_reader(trochia_reader *r) {
     }
     for (uint32_t i = 0; i < in->axes; i++)
         r->position[i] = in->start[in->columns[i]];
-    r->out->segment_count = r->out->pool_count = r->out->failed_move = 0;
+    r->out->segment_count = r->out->pool_count = r->out->failed_move = r->out->merged_count = 0;
 }
 
 /* What the joint at a curve's start may take of it, when the joint at its end wants `other`: its wish, or half, or what

@@ -96,11 +96,12 @@ int32_t trochia_path_smooth(const trochia_path_input *input, trochia_path_output
     trochia_link ring[8];
     trochia_chain chain = {.ring = ring, .count = 0};
     trochia_start_reader(&reader);
-    for (uint64_t row = 0; row < input->count; row++) {
+    for (uint64_t row = 0; row < input->count;) {
+        uint64_t first = row;
         trochia_curve *curve = &trochia_link_at(&chain, chain.count)->curve;
-        int32_t wrong = trochia_read_curve(&reader, row, curve);
+        int32_t wrong = trochia_read_merged(&reader, &row, curve);
         if (wrong) {
-            output->failed_move = row;
+            output->failed_move = first;
             return wrong;
         }
         if (curve->length > 0.0)

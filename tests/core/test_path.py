@@ -122,7 +122,7 @@ def test_chains_of_lines_share_their_lengths(steps, tolerance):
         heading += turn
         here = here + length * np.array([math.cos(heading), math.sin(heading)])
         points.append(tuple(here))
-    segments, _, fault = built(moves_of(*[(x, y, 1, tolerance) for x, y in points]))
+    segments, _, _, fault = built(moves_of(*[(x, y, 1, tolerance) for x, y in points]))
     assert fault is None
     blends = segments[segments["kind"] == 2]["length"]
     assert blends == pytest.approx([2 * d for d in reference_shares(points, tolerance)], rel=1e-6)
@@ -132,14 +132,14 @@ def test_chains_of_lines_share_their_lengths(steps, tolerance):
     ("before", "after", "stop"), [(1, 1, 0), (1, 2, 1), (2, 1, 1), (3, 1, 1), (1, 3, 1), (0, 0, 0)]
 )
 def test_the_stricter_of_two_path_modes_holds_at_their_joint(before, after, stop):
-    segments, _, _ = built(moves_of((1, 0, before, 0.1), (1, 1, after, 0.1)))
+    segments, *_ = built(moves_of((1, 0, before, 0.1), (1, 1, after, 0.1)))
     assert segments["stop"][0] == stop
     assert (segments["kind"] == 2).any() == (stop == 0)
 
 
 def test_a_rest_before_a_move_of_no_length_is_kept_for_the_next():
     moves = moves_of((1, 0, 0, 0), (1, 0, 0, 0), (2, 0, 0, 0))
-    segments, _, _ = built(moves, rests=[0, 1, 0])
+    segments, *_ = built(moves, rests=[0, 1, 0])
     assert list(segments["stop"]) == [1, 1]
     assert list(segments["move"]) == [0, 2]
 
@@ -147,7 +147,7 @@ def test_a_rest_before_a_move_of_no_length_is_kept_for_the_next():
 def test_a_move_without_speed_is_reported_by_its_row():
     moves = moves_of((1, 0, 0, 0), (2, 0, 0, 0))
     moves["rate"][1] = 0.0
-    assert built(moves)[2] == ("feed", 1)
+    assert built(moves)[3] == ("feed", 1)
 
 
 @pytest.mark.parametrize("columns", [(), (1, 0), (0, 0), (0, 9), (-1, 0)])

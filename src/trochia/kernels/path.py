@@ -32,8 +32,8 @@ def build(
     tolerance: float,
     continuity: int = 1,
     limits: NDArray[np.float64] | None = None,
-) -> tuple[NDArray[np.void], NDArray[np.float64], tuple[str, int] | None]:
-    """Return the segments and coefficients of a program's moves, and what stopped the work, if anything did.
+) -> tuple[NDArray[np.void], NDArray[np.float64], int, tuple[str, int] | None]:
+    """Return the segments and coefficients of a program's moves, how many were merged, and what stopped the work.
 
     Parameters
     ----------
@@ -58,7 +58,8 @@ def build(
     Returns
     -------
     tuple
-        Segments (k,), coefficients, and None or ("feed" | "spindle", row of the move that has no speed).
+        Segments (k,), coefficients, number of moves that others stand for, and None or ("feed" | "spindle", row of the
+        move that has no speed).
     """
     if moves.dtype != MOVE or rests.shape != moves.shape or start.shape != (_NINE,):
         raise ValueError("a path is built from MOVE rows, as many rests, and a start of nine axes")
@@ -96,7 +97,7 @@ def build(
     fault = _FAULTS[lib.trochia_path_build(given, made)]
     segments.resize(made.segment_count, refcheck=False)
     pool.resize(made.pool_count, refcheck=False)
-    return segments, pool, (fault, int(made.failed_move)) if fault else None
+    return segments, pool, int(made.merged_count), (fault, int(made.failed_move)) if fault else None
 
 
 def check(segments: NDArray[np.void], pool: NDArray[np.float64], axes: int) -> None:

@@ -42,14 +42,14 @@ def build(program: Program, machine: Machine, *, blend: bool = True, continuity:
     """
     _refuse_missing_axes(program, machine)
     columns = machine.columns
-    segments, pool, fault = kernel.build(
+    segments, pool, merged, fault = kernel.build(
         program.moves, _rests(program, machine), _spindle_speeds(program), start=program.start, columns=columns,
         tolerance=machine.path_tolerance if blend else -1.0, continuity=continuity, limits=_limits(machine),
     )  # fmt: skip
     if fault:
         raise _no_speed(program, *fault)
     letters = "".join(axis.name for axis in machine.axes)
-    return Toolpath(axes=letters, start=program.start[list(columns)], segments=segments, pool=pool)
+    return Toolpath(axes=letters, start=program.start[list(columns)], segments=segments, pool=pool, merged=merged)
 
 
 def _limits(machine: Machine) -> NDArray[np.float64]:

@@ -37,12 +37,15 @@ class Toolpath:
         Rows of :data:`SEGMENT` (k,), read-only; ``move`` leads back to the program's row and so to its source line.
     pool
         Coefficients of all segments, read-only.
+    merged
+        Number of moves that another stands for, being in line with it within Q of G64.
     """
 
     axes: str
     start: NDArray[np.float64]
     segments: NDArray[Any]
     pool: NDArray[np.float64]
+    merged: int = 0
 
     def __post_init__(self) -> None:
         kernel.check(self.segments, self.pool, len(self.axes))
