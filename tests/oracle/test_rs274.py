@@ -26,6 +26,7 @@ SAMPLES = sorted((HERE.parents[1] / "programs").glob("*.ngc"))
 
 # Programs the reference takes although they are at fault, or the other way round, each with its reason.
 DIFFERENCES = {
+    "error-thread-cycle-slide-too-steep": "a slide at 90 degrees sends the reference to the end of the world",
     "error-binary": "the reference reads a line up to its NUL byte; a binary file is refused whole",
     "error-parameter": "parameters are not known here",
     "error-expression": "expressions are not known here",

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trochia.analysis.problems import Problem, Severity, more_lines
-from trochia.program import AXES, Dwell, MoveKind, Pause, Spindle, ToolChange
+from trochia.program import AXES, Dwell, MoveKind, Pause, Spindle, ToolChange, Unfinished
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -41,6 +41,17 @@ def warnings(program: Program, machine: Machine) -> list[Problem]:
         found.append(("rapid-below-cut", low, "a rapid runs below the lowest cut", "Lift Z before travelling."))
     problems = [
         _warn(program, code, moves["line"][mask], message, hint) for code, mask, message, hint in found if mask.any()
+    ]
+    problems += [
+        _warn(
+            program,
+            "unfinished-code",
+            np.array([action.line], dtype=np.uint32),
+            f"{action.code}: {action.why}",
+            "Write its moves out, or use G85, G86 or G89.",
+        )
+        for action in program.actions
+        if isinstance(action, Unfinished)
     ]
     if machine.beam:
         lines = np.array(list(_lit_rests(program)), dtype=np.uint32)

@@ -147,5 +147,28 @@ class Pause(Action):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Probe(Action):
+    """Probe on the next move: until contact (``toward`` the part) or its loss; an error if it ``must`` and does not."""
+
+    toward: bool
+    must: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SpindleLock(Action):
+    """Lock the moves from here on to the spindle, ``pitch`` mm along the way for each turn; 0: free them."""
+
+    pitch: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Unfinished(Action):
+    """A code that is taken as far as its moves go (G87, G88); ``why`` says what is missing."""
+
+    code: str
+    why: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class End(Action):
     """Program end (M2, M30): spindle, beam and coolant off."""

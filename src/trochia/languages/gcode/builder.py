@@ -15,6 +15,7 @@ import numpy as np
 from trochia.errors import ModalConflictError, Source
 from trochia.kernels.placement import new_placement, place
 from trochia.languages.gcode.frames import scaled
+from trochia.languages.gcode.special_moves import SpecialMoves
 from trochia.languages.gcode.state import INCH
 from trochia.program import (
     Action,
@@ -55,7 +56,7 @@ _NO_CENTRE = (0.0, 0.0)
 _KIND, _LINE, _TURNS, _RATE, _POWER, _CENTRE, _TARGET = 0, 1, 2, 3, 4, slice(5, 7), slice(7, 16)
 
 
-class Builder:
+class Builder(SpecialMoves):
     """Gathers moves and actions; :meth:`program` returns them.
 
     Parameters
@@ -83,6 +84,7 @@ class Builder:
         self._direction = 0
         self._speed: float | None = None
         self._surface = self._mist = self._flood = False
+        self._unlocked = None
         self._kept_path = (PathMode.BLEND_DEFAULT, [0.0, 0.0])
 
     def program(self, lines: int) -> Program:
@@ -236,19 +238,6 @@ class Builder:
         """Use another tolerance along the path."""
         self._flush()
         self._placement.tolerance[1] = tolerance * self._placement.scale
-
-    def begin_exact_path(self) -> None:
-        """Keep to the path, and remember how it was followed."""
-        self._flush()
-        placement = self._placement
-        self._kept_path = PathMode(placement.path_mode), list(placement.tolerance)
-        placement.path_mode, placement.tolerance = PathMode.EXACT_PATH, [0.0, 0.0]
-
-    def end_exact_path(self, mode: PathMode, tolerance: float, along: float) -> None:
-        """Follow the path as before."""
-        del mode, tolerance, along
-        self._flush()
-        self._placement.path_mode, self._placement.tolerance = self._kept_path
 
     def set_feed_reference(self) -> None:
         """Nothing: feeds always refer to the part."""

@@ -16,7 +16,7 @@ from trochia.languages.gcode.state import INCH
 from trochia.program.modes import MoveKind, PathMode, Plane, TimeLaw
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
     from pathlib import Path
     from typing import BinaryIO
 
@@ -78,6 +78,35 @@ class Canon:
         """Print an arc: end and centre on the plane's axes, turns, height of the end, rotary axes."""
         first, second = plane.axes
         self._print(_ARC % (target[first], target[second], *centre, turns, target[plane.normal], *target[3:6]))
+
+    def nurbs_feed(self, points: Sequence[tuple[float, float, float]], order: int, target: Position) -> None:
+        """Print how many control points a curve has."""
+        del order, target
+        self._print(f"NURBS_FEED({len(points)}, ...)\n")
+
+    def set_spline_time(self, per_minute: float) -> None:
+        """Print nothing, as the reference."""
+
+    def start_synchronised(self, pitch: float) -> None:
+        """Print the pitch of the moves locked to the spindle."""
+        self._print(f"START_SPEED_FEED_SYNC({pitch:f},0)\n")
+
+    def stop_synchronised(self) -> None:
+        """Print the end of the moves locked to the spindle."""
+        self._print("STOP_SPEED_FEED_SYNCH()\n")
+
+    def rigid_tap(self, start: Position, target: Position, faster: float) -> None:
+        """Print a rigid tap."""
+        del start, faster
+        self._print(f"RIGID_TAP({target[0]:.4f}, {target[1]:.4f}, {target[2]:.4f})\n")
+
+    def straight_probe(self, target: Position, *, toward: bool, must: bool) -> None:
+        """Print a probing move."""
+        del toward, must
+        self._print("TURN_PROBE_ON()\nSTRAIGHT_PROBE" + _SIX % tuple(target[:6]) + "TURN_PROBE_OFF()\n")
+
+    def unfinished(self, code: str, why: str) -> None:
+        """Print nothing: the reference takes these codes without a word."""
 
     def moves(self, rows: Rows) -> None:
         """Print a batch of the fast path."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from trochia.errors import ModalConflictError, ParseError
+from trochia.languages.gcode.groups.diameter import halve
 from trochia.languages.gcode.numbers import as_integer
 from trochia.languages.gcode.registry import G_CODES, WORDS
 from trochia.languages.gcode.state import NO_MOTION
@@ -33,6 +34,7 @@ def check(block: Block, state: State) -> None:
     ParseError
         For a word that no code on the line reads, or a word that is missing.
     """
+    halve(block, state)
     block.motion = _motion_of(block, state)
     if len(block.values) > len(block.axes):
         _check_readers(block)

@@ -33,7 +33,9 @@ class FastPath:
 
     def advance(self, state: State, sink: Sink, offset: int, line: int) -> tuple[int, int]:
         """Take plain lines from byte ``offset`` on, where line number ``line`` begins; return both as they are now."""
-        if state.law is not TimeLaw.PER_SECOND or state.compensation is not None or state.straight_next:
+        if state.law is not TimeLaw.PER_SECOND or state.diameter:
+            return offset, line
+        if state.compensation is not None or state.straight_next:
             return offset, line
         modal = self._reader.modal
         modal.offset, modal.line = offset, line

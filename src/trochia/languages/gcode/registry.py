@@ -7,12 +7,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from trochia.languages.gcode.cycles import bore, drill, tap
+from trochia.languages.gcode.cycles import bore, drill, tap, thread
 from trochia.languages.gcode.groups import (
     arcs,
     compensation,
     coolant,
     coordinates,
+    diameter,
     distance,
     dwell,
     feed,
@@ -23,12 +24,15 @@ from trochia.languages.gcode.groups import (
     overrides,
     path_control,
     plane,
+    probing,
     retract,
     saved_modes,
     set_data,
     shift,
     spindle,
+    splines,
     stopping,
+    synchronised,
     tool,
     tool_length,
     user_codes,
@@ -59,6 +63,7 @@ ORDER = (
     "coordinate system",
     "path control",
     "distance",
+    "diameter mode",
     "arc distance",
     "retract",
     "non-modal",
@@ -89,6 +94,11 @@ G_CODES: dict[int, Code] = {
     **drill.G_CODES,
     **tap.G_CODES,
     **bore.G_CODES,
+    **thread.G_CODES,
+    **synchronised.G_CODES,
+    **probing.G_CODES,
+    **diameter.G_CODES,
+    **splines.G_CODES,
 }
 
 #: number in tenths -> code

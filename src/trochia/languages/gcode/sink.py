@@ -31,6 +31,27 @@ class Sink(Protocol):
     def arc_feed(self, target: Position, centre: tuple[float, float], turns: int, plane: Plane) -> None:
         """Go along an arc or helix about the centre, which is on the plane's axes; turns + = counter-clockwise."""
 
+    def nurbs_feed(self, points: Sequence[tuple[float, float, float]], order: int, target: Position) -> None:
+        """Go along a curve of control points (x, y, weight) in the XY plane; the target is its end."""
+
+    def set_spline_time(self, per_minute: float) -> None:
+        """Let the next curve last 1/per_minute minutes."""
+
+    def start_synchronised(self, pitch: float) -> None:
+        """Lock the moves that follow to the spindle: ``pitch`` units along the way for each turn."""
+
+    def stop_synchronised(self) -> None:
+        """Free the moves from the spindle."""
+
+    def rigid_tap(self, start: Position, target: Position, faster: float) -> None:
+        """Go straight to the target locked to the spindle, turn it about, come back with ``faster`` times its speed."""
+
+    def straight_probe(self, target: Position, *, toward: bool, must: bool) -> None:
+        """Go straight to the target until the probe makes contact or loses it; an error if it ``must`` and does not."""
+
+    def unfinished(self, code: str, why: str) -> None:
+        """Note that a code is taken as far as its moves go."""
+
     def moves(self, rows: Rows) -> None:
         """Take a batch of plain moves, feeds and comments, as the fast path has them."""
 

@@ -78,6 +78,12 @@ class State:
         The next move must be straight, because cutter compensation has ended.
     tolerance, tolerance_along
         G64 P and Q as they act, in the unit they were given in.
+    diameter
+        G7: X words are diameters.
+    spline_points, spline_order
+        The curve that G5.2 began: control points with their weights, and its order.
+    spline_end
+        How the last G5 ended: from its second control point to its end.
     retract_to_r
         G99: canned cycles go back to R, not to where the first of them began.
     cycle_words
@@ -95,6 +101,10 @@ class State:
     path_mode: PathMode = PathMode.BLEND_DEFAULT
     tolerance: float = 0.0
     tolerance_along: float = 0.0
+    diameter: bool = False
+    spline_points: list[tuple[float, float, float]] = field(default_factory=list[tuple[float, float, float]])
+    spline_order: int = 3
+    spline_end: tuple[float, float] = (0.0, 0.0)
     retract_to_r: bool = True
     cycle_words: dict[str, float] = field(default_factory=dict[str, float])
 

@@ -38,6 +38,7 @@ def bore_from_behind(hole: Hole) -> None:
     """G87: go through the hole beside its axis with the spindle stopped, bore the far side on the way back."""
     hole.need_spindle()
     state, sink, words = hole.state, hole.sink, hole.words
+    sink.unfinished("G87", "the spindle is not turned to the angle at which its tool passes the hole")
     letters = "ijk"
     first, second = (words[letters[axis]] for axis in state.plane.axes)
     back = words[letters[state.plane.normal]]
@@ -64,6 +65,7 @@ def bore_and_leave_by_hand(hole: Hole) -> None:
     hole.feed(hole.bottom)
     hole.sink.dwell(hole.words["p"])
     hole.sink.stop_spindle()
+    hole.sink.unfinished("G88", "the tool must be taken out of the hole by hand before the program goes on")
     hole.sink.program_stop(optional=False)
     hole.sink.start_spindle(hole.state.direction)
 
