@@ -95,7 +95,7 @@ typedef struct {
 static void push(trochia_writer *w, double s, double v, double a, double j, double duration) {
     if (!(duration > 0.0))
         return;
-    while (s >= w->walked_to && w->walked + 1 < w->count)
+    while (s >= w->walked_to - TROCHIA_SAME_PLACE(s) && w->walked + 1 < w->count)
         w->walked_to += w->stretches[++w->walked].length;
     trochia_knot knot = {.t = w->t, .s = s, .v = v, .a = a, .j = j, .segment = w->stretches[w->walked].segment};
     w->t += duration;

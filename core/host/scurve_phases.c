@@ -1,7 +1,7 @@
 /* Knots read as phases (cut where segments meet), and as states at given times. */
 #include <math.h>
 
-#include "host/scurve.h"
+#include "host/scurve_ramp.h"
 
 static double way(const trochia_knot *knot, double tau) {
     return tau * (knot->v + tau * (0.5 * knot->a + tau * knot->j / 6.0));
@@ -63,7 +63,8 @@ uint64_t trochia_scurve_phases(const double *starts, uint64_t count, const troch
         if (tau == 0.0 && knot->segment > cursor->segment)
             cursor->segment = knot->segment;
         uint64_t segment = knot->flags ? knot->segment : cursor->segment;
-        int crosses = !knot->flags && segment + 1 < count && starts[segment + 1] < knot[1].s;
+        int crosses =
+            !knot->flags && segment + 1 < count && starts[segment + 1] < knot[1].s - TROCHIA_SAME_PLACE(knot[1].s);
         double until = crosses ? time_of(knot, starts[segment + 1] - knot->s, tau, end) : end;
         if (until > tau) {
             trochia_phase phase = phase_at(knot, starts, segment, tau);

@@ -9,6 +9,10 @@
 
 #include "host/scurve.h"
 
+/* How far sums of lengths may be apart by rounding [mm]: a knot this near a joint stands on it, or a sliver of a phase
+ * would have the jerk of one segment on the next. */
+#define TROCHIA_SAME_PLACE(s) (2e-15 * (s) + 1e-14)
+
 /* Neighbouring stretches taken together, each quotient the greatest of them. */
 typedef struct {
     double length, ceiling, along_a, bend_a, along_j, bend_j, twist_j;
