@@ -74,7 +74,8 @@ class Machine:
         default=False, metadata=key(Flag(), "M100 to M199 of G-code programs are codes of this machine")
     )
     profile: str | None = field(
-        default=None, metadata=key(Text(PROFILES), "velocity profile; the planner's own choice if not given")
+        default=None,
+        metadata=key(Text(PROFILES), "velocity profile; without it s-curve where jerk is given, else trapezoid"),
     )
     spindle: Spindle | None = field(default=None, metadata=key(Record(Spindle), "the spindle"))
     beam: Beam | None = field(default=None, metadata=key(Record(Beam), "a laser or the like"))
