@@ -1,4 +1,4 @@
-"""Planning a million moves: path with blends, and the trapezoid's passes, apart and together; and the anchors' times.
+"""Planning a million moves: path with blends, and both profiles' passes, apart and together; and the anchors' times.
 
 The chains are held in memory as moves, so that neither reading nor a disk is timed.  The first round of every case is
 not measured: it also pays for memory that the system hands out for the first time.
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 MOVES = 1_000_000
 FAST = 3_000_000  #: segments a second a planner must do
+SMOOTH = 400_000  #: segments a second with limited jerk
 ANCHORS = Path(__file__).parents[1] / "tests" / "golden" / "anchors"
 
 
@@ -70,6 +71,7 @@ def cases(name: str, program: Program, machine: Machine) -> list[Case]:
     path = build(program, machine)
     count = len(program.moves)
     target = FAST if count == MOVES else None  # an arc is eighteen pieces, not a short segment
+    smooth = build(program, machine, continuity=2)
     size = (program.moves.nbytes + path.segments.nbytes + path.pool.nbytes) / count
     return [
         Case(name=f"{name}: path, {size:.0f} bytes a move", call=lambda: build(program, machine), count=count),
@@ -80,18 +82,28 @@ def cases(name: str, program: Program, machine: Machine) -> list[Case]:
             count=count,
             target=target,
         ),
+        Case(
+            name=f"{name}: plan with limited jerk, segments",
+            call=lambda: plan(smooth, machine, program=program, profile="s-curve"),
+            count=len(smooth),
+            target=SMOOTH if target else None,
+        ),
     ]
 
 
 def anchors(machine: Machine) -> None:
     """Print the motion times of the anchor programs beside the reference's."""
-    print("\nMotion times [s] on reference-mill, trapezoid\n")
-    print("| program | ours | reference, better trapezoid | second-order bound |")
-    print("|---|---|---|---|")
+    smooth = {row["program"]: row for row in csv.DictReader((ANCHORS / "s-curve.csv").read_text().splitlines())}
+    print("\nMotion times [s] on reference-mill\n")
+    print("| program | trapezoid | reference, better trapezoid | its bound | limited jerk | its bound |")
+    print("|---|---|---|---|---|---|")
     for row in csv.DictReader((ANCHORS / "anchors.csv").read_text().splitlines()):
         program = gcode.read((ANCHORS / f"{row['program']}.ngc").read_text(), name=row["program"])
         time = plan(build(program, machine), machine, program=program).duration
-        print(f"| {row['program']} | {time:.4f} | {row['reference_s']} | {row['bound_s'] or 'none given'} |")
+        path = build(program, machine, continuity=2)
+        jerk = plan(path, machine, program=program, profile="s-curve").duration
+        bounds = (row["bound_s"] or "none given", smooth[row["program"]]["bound_s"] or "none given")
+        print(f"| {row['program']} | {time:.4f} | {row['reference_s']} | {bounds[0]} | {jerk:.4f} | {bounds[1]} |")
 
 
 def main() -> None:
