@@ -7,12 +7,13 @@
 
 enum {
     LONGEST_LINE = 252, /* bytes before the line end; longer ones are errors, which the interpreter reports */
-    ROWS_PER_LINE = 3,  /* comment, feed, move */
+    ROWS_PER_LINE = 4,  /* comment, feed, speed, move */
     AXIS_BITS = 0x1ff,
     CIRCLE_BITS = 0x1e00, /* I J K R */
     OFFSET_BITS = 0xe00,  /* I J K */
     FEED_SLOT = 13,
     CODE_SLOT = 14,
+    SPEED_SLOT = 15,
     NO_MOTION = 255
 };
 
@@ -61,12 +62,14 @@ static int make_move(const trochia_modal *modal, const trochia_plain_line *line,
     return motion == 1 ? (line->seen & CIRCLE_BITS) == 0 : trochia_gcode_arc(modal, line, motion, row);
 }
 
-/* Rows of one line, in the order of execution: comment, feed, move.  Returns their number, or -1: not plain. */
+/* Rows of one line, in the order of execution: comment, feed, speed, move.  Returns their number, or -1: not plain. */
 static int make_rows(const uint8_t *text, const trochia_plain_line *line, trochia_modal *modal, trochia_move *rows) {
     const int motion = motion_of(modal, line), feeds = (int)(line->seen >> FEED_SLOT & 1);
     const double feed = feeds ? line->word[FEED_SLOT] : modal->feed;
     int count = 0;
-    if (motion < 0 || !(feed >= 0.0)) {
+    const int speeds = (int)(line->seen >> SPEED_SLOT & 1);
+    const double speed = speeds ? line->word[SPEED_SLOT] : modal->speed;
+    if (motion < 0 || !(feed >= 0.0) || !(speed >= 0.0)) {
         return -1;
     }
     if (line->comment != NULL) {
@@ -78,6 +81,10 @@ static int make_rows(const uint8_t *text, const trochia_plain_line *line, trochi
         clear_row(&rows[count], modal, TROCHIA_FEED_ROW);
         rows[count++].rate = feed;
     }
+    if (speeds) {
+        clear_row(&rows[count], modal, TROCHIA_SPEED_ROW);
+        rows[count++].rate = speed;
+    }
     if (motion != NO_MOTION) {
         if (!make_move(modal, line, (uint8_t)motion, feed, &rows[count])) {
             return -1;
@@ -86,6 +93,7 @@ static int make_rows(const uint8_t *text, const trochia_plain_line *line, trochi
         modal->motion = (uint8_t)motion;
     }
     modal->feed = feed;
+    modal->speed = speed;
     return count;
 }
 

@@ -1,6 +1,6 @@
 /* The plain-line fast path of the G-code reader, and the printer of its rows.
  *
- * A line is plain when it holds nothing but blanks, comments, a line number and the words G0-G3, axes, I J K R and F
+ * A line is plain when it holds nothing but blanks, comments, a line number and the words G0-G3, axes, I J K R, F, S
  * in a combination that is certainly no error.  Everything else is the Python interpreter's. */
 #ifndef TROCHIA_GCODE_H
 #define TROCHIA_GCODE_H
@@ -11,6 +11,7 @@
 
 /* Rows that are no move stand among the moves, in the order of execution. */
 enum trochia_row_kind {
+    TROCHIA_SPEED_ROW = 253,   /* rate: the S word */
     TROCHIA_COMMENT_ROW = 254, /* target[0]: offset of the comment's first byte in the text, turns: its length */
     TROCHIA_FEED_ROW = 255     /* rate: the F word */
 };
@@ -25,6 +26,7 @@ enum trochia_stop {
 typedef struct {
     double position[9];      /* current point */
     double feed;             /* F word in force; 0: none */
+    double speed;            /* S word in force; 0: none */
     double least_radius;     /* an arc of a smaller radius is an error */
     double spiral;           /* start and end radius of an arc may differ by this, whatever the radius */
     double spiral_share;     /* or by this share of the greater radius */
@@ -40,7 +42,7 @@ typedef struct {
     uint8_t reserved[5];
 } trochia_modal;
 
-/* Words of one line: slots 0-8 axes in the order of trochia_move, 9-11 I J K, 12 R, 13 F, 14 G. */
+/* Words of one line: slots 0-8 axes in the order of trochia_move, 9-11 I J K, 12 R, 13 F, 14 G, 15 S. */
 typedef struct {
     double word[16];
     uint32_t seen; /* bit per slot */
@@ -48,7 +50,7 @@ typedef struct {
     const uint8_t *comment; /* text between the brackets, leading blanks left out; NULL: none */
 } trochia_plain_line;
 
-/* Reads plain lines from modal->offset on, at most `capacity` rows (needs at least 3).  Returns the number of rows. */
+/* Reads plain lines from modal->offset on, at most `capacity` rows (needs at least 4).  Returns the number of rows. */
 uint64_t trochia_gcode_plain(const uint8_t *text, uint64_t size, trochia_modal *modal, trochia_move *rows,
                              uint64_t capacity);
 

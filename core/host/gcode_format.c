@@ -97,7 +97,7 @@ static uint8_t *put_arc(uint8_t *out, const trochia_move *row) {
 
 /* 1 where every number the row prints is below LARGEST (and a number). */
 static int has_printable_numbers(const trochia_move *row) {
-    if (row->kind == TROCHIA_FEED_ROW) {
+    if (row->kind == TROCHIA_FEED_ROW || row->kind == TROCHIA_SPEED_ROW) {
         return fabs(row->rate) < LARGEST;
     }
     int fits = row->plane < 3 && fabs(row->centre[0]) < LARGEST && fabs(row->centre[1]) < LARGEST;
@@ -109,7 +109,8 @@ static int has_printable_numbers(const trochia_move *row) {
 
 static int is_printable(const trochia_move *row, uint64_t text_size) {
     if (row->kind != TROCHIA_COMMENT_ROW) {
-        return (row->kind <= TROCHIA_ARC || row->kind == TROCHIA_FEED_ROW) && has_printable_numbers(row);
+        const int is_word = row->kind == TROCHIA_FEED_ROW || row->kind == TROCHIA_SPEED_ROW;
+        return (row->kind <= TROCHIA_ARC || is_word) && has_printable_numbers(row);
     }
     const double offset = row->target[0];
     return row->turns >= 0 && row->turns < ROOM / 2 && offset >= 0.0 && offset + row->turns <= (double)text_size;
@@ -125,6 +126,8 @@ static uint8_t *put_row(uint8_t *out, const trochia_move *row, const uint8_t *te
         return put_arc(out, row);
     case TROCHIA_FEED_ROW:
         return put_end(put_numbers(put_text(out, "SET_FEED_RATE(", 14), &row->rate, 1));
+    case TROCHIA_SPEED_ROW:
+        return put_end(put_numbers(put_text(out, "SET_SPINDLE_SPEED(0, ", 21), &row->rate, 1));
     default:
         out = put_text(out, "COMMENT(\"", 9);
         out = put_text(out, (const char *)text + (uint64_t)row->target[0], (size_t)row->turns);

@@ -3,13 +3,13 @@
 
 #include <stddef.h>
 
-enum { NOT_PLAIN = 255, LINE_NUMBER = 15, MOST_DIGITS = 18, FIRST_PRINTABLE = 0x20, FIRST_BEYOND_ASCII = 0x7f };
+enum { NOT_PLAIN = 255, LINE_NUMBER = 16, MOST_DIGITS = 18, FIRST_PRINTABLE = 0x20, FIRST_BEYOND_ASCII = 0x7f };
 
 static const uint8_t SLOT[26] = {
     /* a b c d e f */ 3,         4,           5,         NOT_PLAIN, NOT_PLAIN, 13,
     /* g h i j k l */ 14,        NOT_PLAIN,   9,         10,        11,        NOT_PLAIN,
     /* m n o p q r */ NOT_PLAIN, LINE_NUMBER, NOT_PLAIN, NOT_PLAIN, NOT_PLAIN, 12,
-    /* s t u v w   */ NOT_PLAIN, NOT_PLAIN,   6,         7,         8,
+    /* s t u v w   */ 15,        NOT_PLAIN,   6,         7,         8,
     /* x y z       */ 0,         1,           2};
 
 static const double POWER_OF_TEN[MOST_DIGITS + 1] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8, 1e9,
@@ -108,7 +108,7 @@ static const uint8_t *read_word(const uint8_t *p, uint32_t allowed, trochia_plai
 }
 
 int32_t trochia_gcode_words(const uint8_t *text, const uint8_t *end, uint16_t axes, trochia_plain_line *line) {
-    const uint32_t allowed = (axes & 0x1ffU) | 0x7e00U;
+    const uint32_t allowed = (axes & 0x1ffU) | 0xfe00U;
     const uint8_t *p = skip_blanks(text);
     line->seen = 0;
     line->comment = NULL;

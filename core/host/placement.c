@@ -77,8 +77,14 @@ uint64_t trochia_place(const trochia_move *rows, uint64_t count, trochia_placeme
         if (rows[k].kind == TROCHIA_FEED_ROW) {
             placement->feed = rows[k].rate;
             placement->feed_scale = placement->scale;
+        } else if (rows[k].kind == TROCHIA_SPEED_ROW) {
+            placement->speed = rows[k].rate;
+            placement->new_speed = 1;
         } else if (rows[k].kind != TROCHIA_COMMENT_ROW) {
             memmove(&out[made], &rows[k], sizeof *out);
+            if (placement->fills) {
+                out[made].power = placement->lit ? (float)placement->speed : 0.0F;
+            }
             place_move(placement, &out[made++]);
         }
     }

@@ -19,13 +19,17 @@ typedef struct {
     double cosine, sine; /* of the turn */
     double feed;         /* F word in force, kept up to date */
     double feed_scale;   /* length of the unit it counts in [mm] */
+    double speed;        /* S word in force, kept up to date */
     double tolerance[2]; /* of the path mode [mm] */
     double position[9];  /* machine position before the next row [mm, degree] */
     uint8_t plane, law, path_mode;
-    uint8_t reserved[5];
+    uint8_t fills;     /* moves get their power here: speed, or 0 where not lit */
+    uint8_t lit;       /* beam or spindle is on */
+    uint8_t new_speed; /* out: an S word came by */
+    uint8_t reserved[2];
 } trochia_placement;
 
-/* Converts `count` rows, whose rate is the F word, and keeps their power; leaves rows out that are no move.  `out` may
+/* Converts `count` rows, whose rate is the F word; leaves rows out that are no move.  `out` may
  * be `rows`.  Returns the number of moves. */
 uint64_t trochia_place(const trochia_move *rows, uint64_t count, trochia_placement *placement, trochia_move *out);
 

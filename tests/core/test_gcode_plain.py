@@ -8,7 +8,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from trochia.kernels.gcode import COMMENT_ROW, FEED_ROW, OTHER_MOTION, STOP_END, STOP_FULL, STOP_LINE, PlainReader
+from trochia.kernels.gcode import (
+    COMMENT_ROW,
+    FEED_ROW,
+    OTHER_MOTION,
+    SPEED_ROW,
+    STOP_END,
+    STOP_FULL,
+    STOP_LINE,
+    PlainReader,
+)
 
 RAPID, FEED, ARC = range(3)
 
@@ -45,6 +54,8 @@ def kinds_of(text: bytes, **modes: object) -> list[int]:
         (b"X1\n", [RAPID]),
         (b"G0\n", [RAPID]),
         (b"F900\n", [FEED_ROW]),
+        (b"S900\n", [SPEED_ROW]),
+        (b"(a) S7 G1 X1 F5\n", [COMMENT_ROW, FEED_ROW, SPEED_ROW, FEED]),
         (b"F0 G0 X1\n", [FEED_ROW, RAPID]),
         (b"X1 F900 G01 ; remark\n", [FEED_ROW, FEED]),
         (b"( hello ) X1 F2\n", [COMMENT_ROW, FEED_ROW, RAPID]),
@@ -61,8 +72,9 @@ def test_takes_plain_lines(text: bytes, kinds: list[int]) -> None:
 @pytest.mark.parametrize(
     "line",
     [
-        b"%", b"/G1 X1", b"M3", b"G4 P1", b"G1 X1 S5", b"G1.5 X1", b"G4", b"G1 G1 X1", b"G1 X1 X2", b"G1 X", b"G1 X-",
-        b"G1 X1 2", b"G1 X1..2", b"G1 X.", b"G1 X--1", b"G1 X1e2", b"G1 X#1", b"G1 X[1]", b"G1 U1", b"N1.5 X1", b"N X1",
+        b"%", b"/G1 X1", b"M3", b"G4 P1", b"X1 S-5", b"G1.5 X1", b"G4", b"G1 G1 X1", b"G1 X1 X2", b"G1 X",
+        b"G1 X-", b"G1 X1 2", b"G1 X1..2", b"G1 X.", b"G1 X--1", b"G1 X1e2", b"G1 X#1", b"G1 X[1]", b"G1 U1", b"N1.5 X1",
+        b"N X1",
         b"N-1 X1", b"X1 N5", b"(a) N5 X1", b"F-1", b"G1 X1 I1", b"G1 X1 R1", b"R5", b"I1", b"G2", b"G2 X1",
         b"G2 X1 I.5 R1", b"G2 X2 I1 K0", b"G2 X4 I1", b"G2 X3 R.5", b"G2 R1", b"G2 X1 Y0 R1", b"G2 X0.001 I0.0005",
         b"G2 X1 R0", b"(msg, hi)", b"(a, b)", b"(logclose)", b"(PROBEOPEN x)", b"(pyreload)", b"()", b"( )", b"(a)(b)",
@@ -152,7 +164,7 @@ WORDS = st.sampled_from(
 LINES = st.lists(st.lists(WORDS, max_size=5).map("".join), max_size=40).map("\n".join)
 
 
-@given(LINES, st.integers(3, 9))
+@given(LINES, st.integers(4, 9))
 def test_batches_of_any_size_give_the_same_rows(text: str, capacity: int) -> None:
     whole, parts = reader_of(text.encode(), 200), reader_of(text.encode(), capacity)
     rows = whole.read().array().copy()
@@ -164,7 +176,7 @@ def test_batches_of_any_size_give_the_same_rows(text: str, capacity: int) -> Non
 
 
 def test_refuses_what_c_must_not_see() -> None:
-    with pytest.raises(ValueError, match="at least 3"):
+    with pytest.raises(ValueError, match="at least 4"):
         PlainReader(b"", 2)
     with pytest.raises(ValueError, match="behind"):
         reader_of(b"X1", offset=3).read()

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from trochia.kernels.gcode import COMMENT_ROW, FEED_ROW
+from trochia.kernels.gcode import COMMENT_ROW, FEED_ROW, SPEED_ROW
 from trochia.kernels.layout import MOVE
 from trochia.kernels.placement import new_placement, place
 from trochia.languages.gcode.frames import to_machine
@@ -103,3 +103,16 @@ def test_refuses_what_c_must_not_see() -> None:
         place(rows_of(2), new_placement(), rows_of(1))
     with pytest.raises(ValueError, match="no plane"):
         placed(rows_of(1), plane=3)
+
+
+def test_moves_get_the_power_in_force_where_it_is_filled_in() -> None:
+    rows = rows_of(4, kind=[1, SPEED_ROW, 1, 0], rate=[60, 250, 60, 0])
+    placement = new_placement()
+    placement.speed, placement.fills, placement.lit = 100.0, 1, 1
+    out = np.zeros(4, dtype=MOVE)
+    assert place(rows, placement, out) == 3
+    assert out["power"][:3].tolist() == [100.0, 250.0, 250.0]
+    assert (placement.speed, placement.new_speed) == (250.0, 1)
+    placement.lit = 0
+    place(rows, placement, out)
+    assert not out["power"][:3].any()

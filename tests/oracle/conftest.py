@@ -95,9 +95,15 @@ def compare(
             assert alike(theirs, mine), f"fast={fast}, canonical line {number}: reference {theirs!r}, ours {mine!r}"
         assert (judge.rejected is None) == (run.rejected is None), f"reference: {judge.why!r}; ours: {run.why}"
         assert len(judge.lines) == len(run.lines), f"fast={fast}: {judge.lines[-3:]} against {run.lines[-3:]}"
-        if judge.rejected is not None and run.rejected is not None:
+        if judge.rejected is not None and run.rejected is not None and not _sought_in_vain(judge.why, run.why):
             # the reference cuts a line that is too long
             assert run.rejected.strip().startswith(judge.rejected.strip()), f"reference: {judge.why!r}; ours: {run.why}"
+
+
+def _sought_in_vain(theirs: str, ours: str) -> bool:
+    """Return whether a label was looked for up to the end: we name the line that asks for it, not the last one."""
+    at_the_end = theirs.startswith(("EOF in file", "File ended with no", "Failed to find sub"))
+    return at_the_end and ("has no end" in ours or "there is no subroutine" in ours)
 
 
 @pytest.fixture(scope="session")

@@ -9,7 +9,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from trochia.errors import ProgramError
-from trochia.kernels.gcode import COMMENT_ROW, FEED_ROW, Rows
+from trochia.kernels.gcode import COMMENT_ROW, FEED_ROW, SPEED_ROW, Rows
 from trochia.languages.gcode.builder import Builder
 from trochia.languages.gcode.canon import Canon
 from trochia.languages.gcode.interpreter import blocks
@@ -51,6 +51,8 @@ class Recorder:
                 self.comment(rows.comment(k))
             elif row.kind == FEED_ROW:
                 self.set_feed_rate(row.rate)
+            elif row.kind == SPEED_ROW:
+                self.set_spindle_speed(row.rate)
             elif row.kind in (0, 1):
                 getattr(self, STRAIGHT[row.kind])(target)
             else:
@@ -113,6 +115,7 @@ def plain_lines(draw: st.DrawFn) -> str:
     words += [axis + draw(numbers()) for axis in letters]
     words += draw(st.sampled_from([[], [], [], ["F100"], ["f.5"], ["F" + draw(numbers()).lstrip("-")]]))
     words += draw(st.sampled_from([["I1"], ["R" + draw(numbers())], ["J" + draw(numbers()), "I1"]])) if wrong else []
+    words += draw(st.sampled_from([[], [], [], ["S100"], ["s0"], ["S" + draw(numbers())]]))
     words = draw(st.permutations(words))
     number = draw(st.sampled_from(["", "", "", "N10", "n 5 ", "N1.5"]))
     end = draw(st.sampled_from(["", "", "", "(a remark)", "; note, (x", "( A/b #1 )", "(MSG, hi)", "\r", "(a)(b)"]))

@@ -1,7 +1,7 @@
 """Plain G-code lines into rows, rows into canonical text: the face of ``core/host/gcode.h``.
 
 In: the bytes of a program and the modal state.  Out: batches of rows, moves in program units and coordinates, with
-rows for comments and feed words among them.  numpy is imported only where rows are wanted as an array, because the
+rows for comments, F and S words among them.  numpy is imported only where rows are wanted as an array, because the
 whole of ``trochia canon`` on a short program is the start of the process.
 """
 
@@ -17,26 +17,29 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+SPEED_ROW = 253  #: kind of a row that is an S word
 COMMENT_ROW = 254  #: kind of a row that is a comment
 FEED_ROW = 255  #: kind of a row that is an F word
 OTHER_MOTION = 255  #: ``Modal.motion`` where axis words without G0-G3 on the line are not plain
 STOP_END, STOP_LINE, STOP_FULL = range(3)  #: why reading stopped: end of text, a line that is not plain, no more room
 
 _CAPACITY = 4096  # rows a batch: rows and their text stay in the second-level cache
-_ROWS_PER_LINE = 3
+_ROWS_PER_LINE = 4
 _TEXT_PER_ROW = 512
 
 
 class Modal(Protocol):
     """The C struct ``trochia_modal``: what plain lines depend on and change; program units and coordinates.
 
-    ``position`` (9,), ``feed`` per minute, ``least_radius``, ``spiral``, ``spiral_share`` and ``spiral_most`` of arcs,
+    ``position`` (9,), ``feed`` per minute, ``speed`` as S gave it, ``least_radius``, ``spiral``, ``spiral_share`` and
+    ``spiral_most`` of arcs,
     ``offset`` of the first unread byte and the number of the ``line`` there, ``axes`` as a mask of allowed axis words,
     ``motion`` 0-3 or OTHER_MOTION, ``plane``, ``incremental`` (G91), ``centre_absolute`` (G90.1), and ``stop``.
     """
 
     position: MutableSequence[float]
     feed: float
+    speed: float
     least_radius: float
     spiral: float
     spiral_share: float
@@ -104,7 +107,7 @@ class PlainReader:
     text
         The whole program; its buffer is kept.
     capacity
-        Greatest number of rows a batch holds (at least 3: a line makes up to three).
+        Greatest number of rows a batch holds (at least 4: a line makes up to four).
 
     """
 

@@ -20,7 +20,8 @@ class Placement(Protocol):
 
     ``origin`` (9,) and ``shift`` (9,) [program unit, degree], ``scale`` [mm], ``cosine`` and ``sine`` of the turn,
     ``feed`` as F gave it and ``feed_scale``, the length of the unit it counts in [mm], ``tolerance`` (2,) [mm],
-    ``position`` (9,) before the next row [mm, degree], ``plane``, ``law``, ``path_mode``.
+    ``speed`` as S gave it, ``new_speed`` once a row gave another, ``fills`` whether moves get it as power (0 where
+    not ``lit``), ``position`` (9,) before the next row [mm, degree], ``plane``, ``law``, ``path_mode``.
     """
 
     origin: MutableSequence[float]
@@ -30,11 +31,15 @@ class Placement(Protocol):
     sine: float
     feed: float
     feed_scale: float
+    speed: float
     tolerance: MutableSequence[float]
     position: MutableSequence[float]
     plane: int
     law: int
     path_mode: int
+    fills: int
+    lit: int
+    new_speed: int
 
 
 def new_placement() -> Placement:

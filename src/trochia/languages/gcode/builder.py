@@ -121,7 +121,11 @@ class Builder(SpecialMoves):
     def moves(self, rows: Rows) -> None:
         """Take a batch of the fast path."""
         self._flush()
-        self._take(rows.array(), power=self._power)
+        placement = self._placement
+        placement.lit, placement.new_speed, placement.speed = int(self._direction != 0), 0, self._speed_or_one
+        self._take(rows.array(), fills=1)
+        if placement.new_speed:
+            self._speed = placement.speed
 
     def _flush(self) -> None:
         """Convert the rows gathered so far."""
@@ -135,9 +139,10 @@ class Builder(SpecialMoves):
             moves[name] = table[:, column]
         self._take(moves)
 
-    def _take(self, rows: Moves, power: float | None = None) -> None:
-        """Convert rows with program coordinates and F words, and keep them; ``power`` is that of all of them."""
+    def _take(self, rows: Moves, fills: int = 0) -> None:
+        """Convert rows with program coordinates, F and S words, and keep them; ``fills`` gives them their power."""
         placement = self._placement
+        placement.fills = fills
         if placement.plane != Plane.XY and placement.sine and (rows["kind"] == MoveKind.ARC).any():
             raise ModalConflictError(
                 "in a turned coordinate system an arc must lie in the XY plane",
@@ -150,15 +155,16 @@ class Builder(SpecialMoves):
             self._moves = grown
         made = self._moves[self._count :]
         made = made[: place(rows, placement, made)]
-        if power:
-            made["power"] = power
         self._count += len(made)
 
     @property
     def _power(self) -> float:
-        """Power of the beam or speed of the spindle that is on; 1 where no S was given."""
-        if not self._direction:
-            return 0.0
+        """Power of the beam or speed of the spindle that is on, else 0."""
+        return self._speed_or_one if self._direction else 0.0
+
+    @property
+    def _speed_or_one(self) -> float:
+        """Speed or power that S asks for; 1 where no S was given."""
         return 1.0 if self._speed is None else self._speed
 
     @property
@@ -269,8 +275,8 @@ class Builder(SpecialMoves):
     def _turn_spindle(self, direction: int) -> None:
         """Keep the direction; an action stands only where it changes."""
         if direction != self._direction:
-            speed = self._speed or 0.0
-            self._actions.append(Spindle(at=self._at, line=self.line, direction=direction, speed=speed))
+            act = Spindle(at=self._at, line=self.line, direction=direction, speed=self._speed or 0.0)
+            self._actions.append(act)
         self._direction = direction
 
     def wait_orient(self, seconds: float) -> None:
@@ -295,9 +301,8 @@ class Builder(SpecialMoves):
 
     def wait_input(self, index: int, *, analogue: bool, wait: int, timeout: float) -> None:
         """Wait for an input."""
-        self._actions.append(
-            WaitInput(at=self._at, line=self.line, index=index, analogue=analogue, wait=wait, timeout=timeout)
-        )
+        act = WaitInput(at=self._at, line=self.line, index=index, analogue=analogue, wait=wait, timeout=timeout)
+        self._actions.append(act)
 
     def user_code(self, number: int, p: float | None, q: float | None) -> None:
         """Call a code of the machine's own."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from trochia.kernels.gcode import COMMENT_ROW, FEED_ROW
+from trochia.kernels.gcode import COMMENT_ROW, FEED_ROW, SPEED_ROW
 from trochia.languages.gcode.frames import scaled
 from trochia.languages.gcode.interpreter import interpret
 from trochia.languages.gcode.reading import USUAL
@@ -124,6 +124,8 @@ class Canon:
             self.comment(rows.comment(at))
         elif row.kind == FEED_ROW:
             self.set_feed_rate(row.rate)
+        elif row.kind == SPEED_ROW:
+            self.set_spindle_speed(row.rate)
         elif row.kind == MoveKind.ARC:
             self.arc_feed(list(row.target), (row.centre[0], row.centre[1]), row.turns, Plane(row.plane))
         elif row.kind == MoveKind.FEED:

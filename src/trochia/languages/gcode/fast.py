@@ -1,4 +1,4 @@
-"""The plain lines of a program, in C: blanks, comments, G0 to G3 with axes, I J K R, and F.
+"""The plain lines of a program, in C: blanks, comments, G0 to G3 with axes, I J K R, F, S.
 
 In: the text, where to start, and the modal state.  Out: batches of rows to the sink, and the state moved on.  A line
 that is not certainly plain and certainly free of error is left to the interpreter, untouched; what is taken gives the
@@ -56,6 +56,7 @@ class FastPath:
         modal = self._reader.modal
         modal.position = state.position
         modal.feed = state.feed
+        modal.speed = state.speed
         modal.motion = _PLAIN_MOTIONS.get(state.motion, OTHER_MOTION)
         modal.plane = state.plane
         modal.incremental = not state.absolute
@@ -70,5 +71,6 @@ class FastPath:
         modal = self._reader.modal
         state.position = list(modal.position)
         state.feed = modal.feed
+        state.speed = modal.speed
         if modal.motion != OTHER_MOTION:
             state.motion = 10 * modal.motion
