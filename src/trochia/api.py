@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from trochia.analysis.check import Verdict, judge
 from trochia.analysis.plan import Plan, make
-from trochia.analysis.problems import from_error
+from trochia.analysis.problems import Problem, Severity, from_error
 from trochia.analysis.travel import shift_that_fits, travel_error
 from trochia.errors import OutOfTravelError, PlanningError, ProgramError
 from trochia.languages import gcode as language
@@ -101,10 +101,16 @@ def check(
     reading
         As in :func:`gcode`.
     """
+    remarks: list[Problem] = []
+
+    def remark(line: int, message: str) -> None:
+        remarks.append(Problem(severity=Severity.WARNING, code="dialect", file=name, line=line, message=message))
+
+    reading = replace(reading or language.Reading(), on_remark=remark)
     try:
         made = make(gcode(text, machine, at=at, name=name, reading=reading), machine, profile=profile)
     except ProgramError:
-        reading = replace(reading or language.Reading(), on_end=None)
+        reading = replace(reading, on_end=None, on_remark=None)
         work = reading.work.placed(**(at or {}))
         errors = language.problems(text, name=name, work=work, start=_start(machine), reading=reading)
         found = tuple(from_error(error, name) for error in errors)
@@ -113,9 +119,9 @@ def check(
         return Verdict(problems=(from_error(error, name),))
     verdict = judge(made)
     if verdict.problems and verdict.problems[0].code == OutOfTravelError.code:
-        hint = _where_it_fits(text, made, at or {}, profile, reading)
+        hint = _where_it_fits(text, made, at or {}, profile, replace(reading, on_remark=None))
         verdict = replace(verdict, problems=(replace(verdict.problems[0], hint=hint), *verdict.problems[1:]))
-    return verdict
+    return replace(verdict, problems=(*verdict.problems, *remarks))
 
 
 def simulate(planned: Plan, folder: str | Path | None = None, *, period: float | None = None) -> Recording:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import os
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -35,6 +36,11 @@ def command(*, program: str, output: str | None, block_delete: bool, as_json: bo
     from trochia.languages.gcode.canon import print_text  # noqa: PLC0415 - `trochia --help` must stay light
 
     name = "<stdin>" if program == "-" else program
+
+    def remark(line: int, message: str) -> None:
+        click.echo(f"warning: {name}:{line}: {message}", err=True)
+
+    reading = replace(reading, on_remark=remark)
     text = sys.stdin.buffer.read() if program == "-" else Path(program).read_bytes()
     if as_json:
         _print_json(text, name, block_delete=block_delete, reading=reading)

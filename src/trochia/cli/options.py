@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 _PLACE = re.compile(r"\s*([XYZABCUVW])\s*=?\s*([+-]?(?:\d+\.?\d*|\.\d+))\s*(mm|cm|m|in|deg|°)?\s*,?", re.IGNORECASE)
 
+DIALECT_NAMES = ("linuxcnc", "grbl", "fanuc", "marlin")  # those of `languages.gcode.DIALECTS`
 type_program = click.Path(exists=True, dir_okay=False, readable=True, allow_dash=True)
 
 machine = click.option(
@@ -69,17 +70,23 @@ def reading(command: Callable[..., Any]) -> Callable[..., Any]:
     command = setup.files(command)
 
     @functools.wraps(command)
-    def with_reading(*, subroutines: tuple[Path, ...], max_lines: int | None, **values: Any) -> Any:  # noqa: ANN401 - click's
+    def with_reading(*, subroutines: tuple[Path, ...], max_lines: int | None, dialect: str, **values: Any) -> Any:  # noqa: ANN401 - click's
+        from trochia.languages.gcode.dialects import DIALECTS  # noqa: PLC0415 - `trochia --help` must stay light
         from trochia.languages.gcode.reading import MOST_LINES, Reading  # noqa: PLC0415 - `trochia --help` must stay light
 
         program = str(values.get("program", "-"))
         own = () if program == "-" else (Path(program).parent,)
-        return command(reading=Reading(subroutines=subroutines or own, most_lines=max_lines or MOST_LINES), **values)
+        found = Reading(subroutines=subroutines or own, most_lines=max_lines or MOST_LINES, dialect=DIALECTS[dialect])
+        return command(reading=found, **values)
 
     decorated = click.option(
         "--max-lines", type=click.IntRange(min=1), metavar="N",
         help="Lines a program may execute before its loops count as endless; ten millions unless given.",
     )(with_reading)  # fmt: skip
+    decorated = click.option(
+        "--dialect", type=click.Choice(DIALECT_NAMES), default="linuxcnc", show_default=True,
+        help="Whose G-code it is.",
+    )(decorated)  # fmt: skip
     return click.option(
         "--subroutines", multiple=True, metavar="DIR", type=click.Path(exists=True, file_okay=False, path_type=Path),
         help="Folder of files with subroutines (again for more); without it the program's own.",

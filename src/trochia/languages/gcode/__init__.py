@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from trochia.languages.gcode.dialects import DIALECTS, Dialect
 from trochia.languages.gcode.interpreter import HOME, blocks, interpret
 from trochia.languages.gcode.reading import USUAL, Reading
 
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from trochia.errors import ProgramError
     from trochia.program import Program, WorkState
 
-__all__ = ["ALL_AXES", "MOST_PROBLEMS", "Reading", "blocks", "interpret", "problems", "read"]
+__all__ = ["ALL_AXES", "DIALECTS", "MOST_PROBLEMS", "Dialect", "Reading", "blocks", "interpret", "problems", "read"]
 
 ALL_AXES = "XYZABCUVW"
 MOST_PROBLEMS = 10_000  #: after so many, a text is no part program, and reading it further helps nobody

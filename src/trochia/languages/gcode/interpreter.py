@@ -9,6 +9,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from trochia.errors import ParseError
+from trochia.languages.gcode.adapt import adapt
+from trochia.languages.gcode.dialects import LINUXCNC
 from trochia.languages.gcode.execution import run_line
 from trochia.languages.gcode.place import Place
 from trochia.languages.gcode.predefined import define
@@ -95,6 +97,8 @@ def blocks(
     ProgramError
         Where the reference rejects the program.
     """
+    if reading.dialect is not LINUXCNC:
+        text = _adapted(text, reading, name)
     work = work or reading.work
     state = begin(work, start)
     for number, value in work.variables.items():
@@ -117,6 +121,15 @@ def blocks(
     finally:
         sink.on_reset()
         sink.on_reset()
+
+
+def _adapted(text: bytes | mmap, reading: Reading, name: str) -> bytes:
+    """Return a text of another dialect in this language, and hand its remarks over."""
+    adapted, remarks = adapt(text[:], reading.dialect, name=name)
+    for remark in remarks:
+        if reading.on_remark is not None:
+            reading.on_remark(remark.line, remark.message)
+    return adapted
 
 
 def _announce(state: State, sink: Sink) -> None:

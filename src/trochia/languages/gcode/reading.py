@@ -6,12 +6,14 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from trochia.languages.gcode.dialects import LINUXCNC, Dialect
 from trochia.program.work import WorkState
 
 if TYPE_CHECKING:
     from pathlib import Path
 
 OnEnd = Callable[[WorkState], None]
+OnRemark = Callable[[int, str], None]
 
 MOST_LINES = 10_000_000  #: executed lines after which a program counts as endless
 
@@ -32,6 +34,10 @@ class Reading:
         A line that runs before the program.
     ini
         Values of an ini file by section and name, in capitals.
+    dialect
+        Whose language the program is in; files with subroutines are in LinuxCNC's.
+    on_remark
+        Is given what a dialect's program means otherwise: line and message.
     on_end
         Is given what the program leaves set up, when it has come to its end.
     """
@@ -41,6 +47,8 @@ class Reading:
     work: WorkState = field(default_factory=WorkState)
     startup: str = ""
     ini: Mapping[tuple[str, str], str] = field(default_factory=dict[tuple[str, str], str])
+    dialect: Dialect = LINUXCNC
+    on_remark: OnRemark | None = None
     on_end: OnEnd | None = None
 
     def __post_init__(self) -> None:
