@@ -73,7 +73,7 @@ def test_takes_plain_lines(text: bytes, kinds: list[int]) -> None:
     "line",
     [
         b"%", b"/G1 X1", b"M3", b"G4 P1", b"X1 S-5", b"G1.5 X1", b"G4", b"G1 G1 X1", b"G1 X1 X2", b"G1 X",
-        b"G1 X-", b"G1 X1 2", b"G1 X1..2", b"G1 X.", b"G1 X--1", b"G1 X1e2", b"G1 X#1", b"G1 X[1]", b"G1 U1", b"N1.5 X1",
+        b"G1 X-", b"G1 X1 2", b"G1 X1..2", b"G1 X.", b"G1 X--1", b"G1 X1e2", b"G1 X#1", b"G1 X[1]", b"G1 U1",
         b"N X1",
         b"N-1 X1", b"X1 N5", b"(a) N5 X1", b"F-1", b"G1 X1 I1", b"G1 X1 R1", b"R5", b"I1", b"G2", b"G2 X1",
         b"G2 X1 I.5 R1", b"G2 X2 I1 K0", b"G2 X4 I1", b"G2 X3 R.5", b"G2 R1", b"G2 X1 Y0 R1", b"G2 X0.001 I0.0005",
