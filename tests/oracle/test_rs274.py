@@ -28,6 +28,7 @@ SAMPLES = sorted((HERE.parents[1] / "programs").glob("*.ngc"))
 DIFFERENCES = {
     "error-thread-cycle-slide-too-steep": "a slide at 90 degrees sends the reference to the end of the world",
     "error-binary": "the reference reads a line up to its NUL byte; a binary file is refused whole",
+    "branches": "after a BREAK out of a WHILE the reference leaves the next DO loop after its first round",
     "error-python-in-comment": "the reference runs it",
     "user-codes": "the reference alone has no codes of the machine's own",
     "tools": "without a tool table the reference knows tools 1 to 3 only; here every tool can be called",

@@ -62,7 +62,7 @@ def _log(name: str, rest: str, state: State, sink: Sink) -> None:
     elif name == "logclose":
         sink.close_log()
     else:
-        sink.open_log(rest.strip(), append=name == "logappend")
+        sink.open_log(rest, append=name == "logappend")
 
 
 def shown(text: str, parameters: Parameters) -> str:
