@@ -103,9 +103,51 @@ static int settle_chain(const trochia_chain *chain, uint32_t n, uint64_t i) {
     return 1;
 }
 
+/* Hats on this joint and both beside it, as an exchange between neighbours: with bends m_j = kappa A_j (a circle's) and
+ * (w A) dc = C - h^2 / 6 given across each line h between hats whose means lie dc apart, every mean is 0, and all that
+ * a joint gives it gets back.  So any chords of a circle bend as the circle does where C, here the longest line's, is
+ * the same all along.  Returns 1 when that fits inside what is left of P at the three joints. */
+static int settle_spread(const trochia_chain *chain, uint32_t n, uint64_t i) {
+    if (i < 2 || i + 2 > chain->count || takes(&trochia_link_at(chain, i - 2)->turn) ||
+        takes(&trochia_link_at(chain, i + 2)->turn))
+        return 0;
+    trochia_turn *last = &trochia_link_at(chain, i - 1)->turn, *turn = &trochia_link_at(chain, i)->turn;
+    trochia_turn *next = &trochia_link_at(chain, i + 1)->turn;
+    double h[4], longest = 0.0, shortest = INFINITY;
+    for (uint64_t k = 0; k < 4; k++) {
+        const trochia_curve *line = &trochia_link_at(chain, i - 2 + k)->curve;
+        if (line->kind != TROCHIA_LINE)
+            return 0;
+        h[k] = line->length;
+        longest = fmax(longest, h[k]);
+        shortest = fmin(shortest, h[k]);
+    }
+    if (!passes(last) || !passes(next) || longest > UNEVEN * shortest || longest - shortest <= 1e-12 * longest)
+        return 0;
+    double area = 0.5 * (h[1] + h[2]), whole = longest * longest;
+    double left = 0.5 * (whole - h[1] * h[1]) / (h[0] + h[1] + h[2]) / area;
+    double right = 0.5 * (whole - h[2] * h[2]) / (h[1] + h[2] + h[3]) / area;
+    double own = (1.0 - left - right) / area, l = 2.0 * left / (h[0] + h[1]), r = 2.0 * right / (h[2] + h[3]);
+    double here = own * h[1] * h[1] / 6.0 + left * (2.0 * h[1] + h[0]) / 3.0;
+    double there[2] = {l * h[0] * h[0] / 6.0, r * h[3] * h[3] / 6.0};
+    if (own < 0.0 || turn->used + turn->size * here > turn->tolerance ||
+        last->used + turn->size * there[0] > last->tolerance || next->used + turn->size * there[1] > next->tolerance)
+        return 0;
+    turn->kind = TROCHIA_TURN_CHAIN;
+    turn->used += turn->size * here;
+    last->used += turn->size * there[0];
+    next->used += turn->size * there[1];
+    const double *m = turn->jump;
+    add(trochia_link_at(chain, i - 2), n, m, 0.0, 0.0, 0.0, l);
+    add(trochia_link_at(chain, i - 1), n, m, there[0], 0.5 * l * h[0], l, own);
+    add(trochia_link_at(chain, i), n, m, here, left + 0.5 * own * h[1] - 1.0, own, r);
+    add(trochia_link_at(chain, i + 1), n, m, there[1], -0.5 * r * h[3], r, 0.0);
+    return 1;
+}
+
 void trochia_turn_settle(const trochia_chain *chain, uint32_t n, uint64_t i) {
     trochia_turn *turn = &trochia_link_at(chain, i)->turn;
-    if (settle_chain(chain, n, i))
+    if (settle_spread(chain, n, i) || settle_chain(chain, n, i))
         return;
     const trochia_turn *last = &trochia_link_at(chain, i - 1)->turn, *next = &trochia_link_at(chain, i + 1)->turn;
     double h0 = trochia_link_at(chain, i - 1)->curve.length, h1 = trochia_link_at(chain, i)->curve.length;

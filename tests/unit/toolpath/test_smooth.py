@@ -69,7 +69,7 @@ def test_uneven_chords_cost_one_cubic_each_where_all_fits_the_tolerance():
     middle = (path.segments["move"] > 5) & (path.segments["move"] < 110)
     assert np.array_equal(path.segments["move"][middle], np.arange(6, 110))
     bend = np.linalg.norm(path.points(np.flatnonzero(middle), np.zeros(104), 2), axis=1)
-    assert bend == pytest.approx(np.full(104, 1 / 50), rel=0.35)
+    assert bend == pytest.approx(np.full(104, 1 / 50), rel=1e-3)
 
 
 def test_exact_path_stops_where_bend_jumps():
