@@ -88,3 +88,9 @@ def test_loops_run_alike_with_and_without_kept_lines(label):
     looped = [line for line in canon(text) if line.startswith("STRAIGHT_FEED")]
     flat = "f100 g1 x0\n" + "".join(f"g1 x{n} y{2 * n}\nx1\ny2\n" for n in range(20)) + "m2\n"
     assert looped == [line for line in canon(flat) if line.startswith("STRAIGHT_FEED")]
+
+
+def test_diameters_count_in_loops_too():
+    lines = canon("f100 g7\no1 repeat [4]\ng1 x#1 z1\n#1=[#1+2]\no1 endrepeat\nm2\n")
+    moves = [line for line in lines if line.startswith("STRAIGHT_FEED")]
+    assert [move.split("(")[1].split(",")[0] for move in moves] == ["0.0000", "1.0000", "2.0000", "3.0000"]

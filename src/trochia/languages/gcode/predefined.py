@@ -58,6 +58,10 @@ NAMES: dict[str, tuple[str, Reading]] = {
     "_feed": ("F in force", lambda state: state.feed),
     "_rpm": ("S in force", lambda state: state.speed),
     "_current_tool": ("tool in the spindle", lambda state: float(state.loaded)),
+    "_current_pocket": ("its place in the tool table", lambda state: float(state.slot)),
+    "_selected_tool": ("tool of the last T", lambda state: float(state.tool)),
+    "_lathe_diameter_mode": ("1 with G7", lambda state: float(state.diameter)),
+    "_lathe_radius_mode": ("1 with G8", lambda state: float(not state.diameter)),
     "_task": ("0: the program is read, not run", lambda _: 0.0),
     "_remap_level": ("0: no code is remapped here", lambda _: 0.0),
 }

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from trochia.errors import ParseError
 from trochia.languages.gcode.block import AXIS, Block
+from trochia.languages.gcode.check import check
 from trochia.languages.gcode.functions import Refusal
 from trochia.languages.gcode.registry import G_CODES
 
@@ -50,9 +51,7 @@ class Straight:
                 block.values[letter] = block.axes[column] = value() if callable(value) else value
         except Refusal as refusal:
             raise block.place.fault(ParseError, refusal.message, at, hint=refusal.hint) from None
-        block.motion = code
-        if code.check is not None:
-            code.check(block, state)
+        check(block, state)
         code.run(block, state, sink)
         return True
 
