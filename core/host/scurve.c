@@ -181,36 +181,47 @@ static void run_over(trochia_writer *w, uint64_t to, const trochia_range *range,
     run(w, to, &way.range, v, way.peak);
 }
 
+/* Runs one after another, by way of places with a = 0. */
+typedef struct {
+    trochia_way ways[3];
+    uint64_t to[3];
+    int count;
+    double time;
+} trochia_route;
+
+static void route_by(const trochia_writer *w, trochia_route *route, uint64_t to, double v) {
+    int last = route->count - 1;
+    uint64_t from = last < 0 ? w->at : route->to[last];
+    trochia_range range = range_of(w->stretches, from, to);
+    double u = last < 0 ? w->v : route->ways[last].v;
+    trochia_way way = way_over(&range, u, v);
+    route->ways[route->count] = way;
+    route->to[route->count++] = to;
+    route->time += way.time;
+}
+
 /* The ramp has met what the pass back allows, at boundary b: on to the next place where that has a = 0, at once, or by
- * way of a = 0 at b or one before, whichever is quickest. */
+ * way of a = 0 at b, one before, or both, whichever is quickest. */
 static uint64_t join(trochia_writer *w, const trochia_front *far, uint64_t b) {
     uint64_t to = b;
     while (to < w->count && !w->stretches[to].node)
         to++;
     double met = b < w->count ? w->stretches[b].back : 0.0, v = to < w->count ? w->stretches[to].back : 0.0;
-    trochia_range after = range_of(w->stretches, b, to), whole = far->range;
-    for (uint64_t k = b; k < to; k++)
-        trochia_range_add(&whole, &w->stretches[k]);
-    trochia_way once = way_over(&whole, far->v, v), first[2], second[2];
-    double times[2] = {INFINITY, INFINITY};
-    if (to > b) {
-        first[0] = way_over(&far->range, far->v, met);
-        second[0] = way_over(&after, met, v);
-        times[0] = first[0].time + second[0].time;
-    }
-    if (far->at + 1 < b) {
-        trochia_range last = range_of(w->stretches, b - 1, to);
-        first[1] = way_over(&far->before, far->v, far->until);
-        second[1] = way_over(&last, far->until, v);
-        times[1] = first[1].time + second[1].time;
-    }
-    int least = times[1] < times[0];
-    if (once.time <= times[least]) {
-        run(w, to, &once.range, v, once.peak);
-        return to;
-    }
-    run(w, least ? b - 1 : b, &first[least].range, first[least].v, first[least].peak);
-    run(w, to, &second[least].range, v, second[least].peak);
+    trochia_route best = {.time = INFINITY};
+    int before = far->at + 1 < b ? 2 : 1, at = to > b ? 2 : 1;
+    for (int i = 0; i < before; i++)
+        for (int k = 0; k < at; k++) {
+            trochia_route route = {.time = 0.0};
+            if (i)
+                route_by(w, &route, b - 1, far->until);
+            if (k)
+                route_by(w, &route, b, met);
+            route_by(w, &route, to, v);
+            if (best.count == 0 || route.time < best.time)
+                best = route;
+        }
+    for (int k = 0; k < best.count; k++)
+        run(w, best.to[k], &best.ways[k].range, best.ways[k].v, best.ways[k].peak);
     return to;
 }
 
