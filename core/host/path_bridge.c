@@ -14,6 +14,7 @@
 static const double TANGENT = 1e-6; /* rad: directions closer than this are the same; the same part of the bend */
 static const double STRAIGHT = 1e-9;
 static const double ARC_BOTH = 0.6; /* rad: how much of an arc is replaced at most */
+static const double SHORT = 1e-5;   /* mm: below this, differences of places tell no direction any more */
 enum { SAMPLES = 16 };
 
 static void bend_at(const trochia_curve *curve, uint32_t n, double s, double *x) {
@@ -140,7 +141,7 @@ static double deviation(const trochia_frame *frame, const trochia_curve *a, cons
 void trochia_bridge_settle(const trochia_frame *frame, const trochia_curve *a, const trochia_curve *b,
                            trochia_turn *turn) {
     trochia_bridge bridge;
-    for (int attempt = 0; attempt < 40 && turn->before > 1e-6; attempt++) {
+    for (int attempt = 0; attempt < 40 && turn->before > SHORT; attempt++) {
         trochia_bridge_make(frame, a, b, turn, &bridge);
         double greatest = deviation(frame, a, b, turn, &bridge);
         if (greatest <= turn->tolerance)

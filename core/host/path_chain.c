@@ -3,12 +3,15 @@
  * The programmed path p(s), s its length, has p'' = sum of m_i delta(s - s_i).  Replacing each delta by a kernel phi_i
  * of area 1 and mean 0 gives a path x with x - p = sum of m_i psi_i(s - s_i), psi_i'' = phi_i - delta: outside a
  * kernel's support nothing changes, and kernels may overlap.  With phi_i >= 0, psi_i >= 0 is convex on each side of
- * s_i, so |x - p| <= sum of |m_i| psi_i, which is greatest at a joint. Kept <= P there, it is the bound both ways: x(s)
- * and p(s) are that near.  Two kernels, both with x'' even between knots, so that the curve is made of cubics: corner:
- * triangle of legs d, psi(0) = d / 6; d = 6 P / |m|, at most the shorter line. chain:  hats H_j over the lines beside
- * joint j, (1 - w) H_i / A_i + w H_j / A_j with A the hats' areas: the joint j on the shorter line's far side takes w =
- * (h1 - h0) / (h1 + h0 + h2) and so brings the mean to 0.  All knots are joints: one cubic a line, and on a circle of
- * even chords x'' is that of the circle. */
+ * s_i, so |x - p| <= sum of |m_i| psi_i, which is greatest at a joint.  Kept <= P there, it is the bound both ways:
+ * x(s) and p(s) are that near.  Kernels are even between knots, so that the curve is made of cubics.
+ *
+ * Corner: a triangle of legs d, psi(0) = d / 6; d = 6 P / |m|, at most the shorter line.
+ *
+ * Chain: hats H_j over the lines beside joint j, areas A_j: parts of H_i and of both its neighbours, or, where there is
+ * no neighbour or no room for one, (1 - w) H_i / A_i + w H_j / A_j, j on the shorter line's far side and
+ * w = (h1 - h0) / (h1 + h0 + h2), which brings the mean to 0.  All knots are joints: one cubic a line, and on even
+ * chords of a circle x'' is that of the circle. */
 #include <math.h>
 #include <stddef.h>
 
