@@ -97,6 +97,11 @@ class Compensator:
 
     # --- moves
 
+    @property
+    def side(self) -> int:
+        """+1 tool on the left, -1 on the right."""
+        return self._side
+
     def straight_traverse(self, target: Position) -> None:
         """Take a rapid move."""
         self._straight(MoveKind.RAPID, target)

@@ -60,6 +60,8 @@ class Flow:
         Where passing over began.
     turning
         The label of the loop or subroutine that was jumped to last.
+    line
+        Number of the line that runs, in its own text.
     ended
         M99 stood in the main program: it ends.
     """
@@ -69,6 +71,7 @@ class Flow:
         self.since: Control | None = None
         self.turning: Label | None = None
         self.ended = False
+        self.line = 1
         self.calls: list[_Call] = []
         self.on_call: Callable[[], None] = _nothing
         self.on_return: Callable[[Place], None] = _nothing_at
@@ -92,6 +95,7 @@ class Flow:
         parameters.predefined |= {
             "_value": Computed(lambda: self._value),
             "_value_returned": Computed(lambda: self._returned),
+            "_line": Computed(lambda: float(self.line)),
             "_call_level": Computed(lambda: float(len(self.calls))),
         }
 

@@ -27,6 +27,14 @@ _G80 = 800.0
 _FIRST_POSITION = 5420
 _FAULTS = (5600, 5601)  # tool changer: there is none here, so there is no fault
 
+
+def _compensation_code(state: State) -> float:
+    """Return 400, 410 or 420, for G40 to G42."""
+    if state.compensation is None:
+        return 400.0
+    return 410.0 if state.compensation.side > 0 else 420.0
+
+
 #: name -> what it is, worked out from the modal state; codes are ten times their number
 NAMES: dict[str, tuple[str, Reading]] = {
     "_vmajor": ("version of the language", lambda _: VERSION[0]),
@@ -41,6 +49,7 @@ NAMES: dict[str, tuple[str, Reading]] = {
     "_units_per_minute": ("1 with G94", lambda state: float(state.law == TimeLaw.PER_SECOND)),
     "_units_per_rev": ("1 with G95", lambda state: float(state.law == TimeLaw.PER_REV)),
     "_coord_system": ("code of the coordinate system", lambda state: _coordinate_code(state.system)),
+    "_ccomp": ("code of cutter compensation", _compensation_code),
     "_tool_offset": ("1 where a tool offset is in force", lambda state: float(any(state.tool_offset))),
     "_retract_r_plane": ("1 with G99", lambda state: float(state.retract_to_r)),
     "_retract_old_z": ("1 with G98", lambda state: float(not state.retract_to_r)),

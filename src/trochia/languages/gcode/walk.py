@@ -189,6 +189,7 @@ class Walk:
         if mark.text.main:
             self._shown = mark.line
         self._sink.line = self._shown
+        flow.line = mark.line
         self._left -= 1
         try:
             if self._left < 0:
