@@ -1,6 +1,8 @@
 """Sphinx: the documentation, in MyST Markdown; `make docs` fails on any warning."""
 
+import runpy
 from importlib import metadata
+from pathlib import Path
 
 project = "Trochia"
 release = metadata.version("trochia")
@@ -14,3 +16,5 @@ html_title = f"Trochia {release}"
 autodoc_member_order = "bysource"
 autodoc_typehints = "description"
 nitpicky = False
+
+runpy.run_path(str(Path(__file__).parent / "language_pages.py"))["write"]()
