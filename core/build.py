@@ -25,6 +25,7 @@ HEADERS = [
     "host/gcode.h",
     "host/placement.h",
     "host/twin.h",
+    "host/stepper.h",
     "host/contour.h",
 ]
 FLAGS = ["-std=c11", "-O3", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-ffp-contract=off", "-fno-math-errno"]
