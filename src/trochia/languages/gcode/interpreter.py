@@ -18,6 +18,7 @@ from trochia.languages.gcode.reader import LONGEST_LINE
 from trochia.languages.gcode.reading import USUAL, Reading
 from trochia.languages.gcode.state import begin, work_of
 from trochia.languages.gcode.stored import define as define_stored
+from trochia.languages.gcode.stored import define_settings
 from trochia.languages.gcode.texts import Text, Texts, next_line
 from trochia.languages.gcode.walk import HOW_TO_END, Walk
 
@@ -105,6 +106,7 @@ def blocks(
         state.parameters.numbered[number] = value
     define(state.parameters, state)
     define_stored(state.parameters, state)
+    define_settings(state.parameters, reading.ini)
     _announce(state, sink)
     in_percent = _open(text, name)
     sink.on_reset()

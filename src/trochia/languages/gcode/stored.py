@@ -15,7 +15,7 @@ from trochia.program.parameter_file import ACTIVE, FIRST_SYSTEM, G28, G30, ROTAT
 from trochia.program.work import SYSTEMS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from trochia.languages.gcode.parameters import Parameters
     from trochia.languages.gcode.state import State
@@ -39,6 +39,20 @@ def define(parameters: Parameters, state: State) -> None:
         _point(computed, state, first, _origin(state, system))
         computed[first + ROTATION] = _rotation(state, system)
     _tool(computed, state)
+
+
+def define_settings(parameters: Parameters, ini: Mapping[tuple[str, str], str]) -> None:
+    """Let ``#<_ini[section]name>`` be the numbers of an ini file."""
+    for (section, name), text in ini.items():
+        try:
+            value = float(text)
+        except ValueError:
+            continue
+        parameters.predefined[f"_ini[{section}]{name}".lower()] = _constant(value)
+
+
+def _constant(value: float) -> Computed:
+    return Computed(lambda: value)
 
 
 def _shift_writer(state: State) -> Callable[[float], None]:

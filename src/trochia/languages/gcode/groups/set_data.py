@@ -33,7 +33,7 @@ def set_data(block: Block, state: State, sink: Sink) -> None:
     """G10."""
     kind = int(block.values.get("l", -1))
     if kind == 0:
-        sink.reload_tools()
+        _reload(block, state, sink)
     elif kind in (2, 20):
         _set_system(block, state, sink, to_here=kind == 20)
     elif kind in (1, 10, 11):
@@ -41,6 +41,15 @@ def set_data(block: Block, state: State, sink: Sink) -> None:
     else:
         raise block.fault(ParseError, "G10 needs L0, L1, L2, L10, L11 or L20", "l" if "l" in block.values else "G10",
                           hint=_WHAT)  # fmt: skip
+
+
+def _reload(block: Block, state: State, sink: Sink) -> None:
+    """L0: read the tool table anew, with no tool in the spindle whose data could change under it."""
+    number = state.loaded or state.in_spindle.number
+    if number:
+        raise block.fault(ModalConflictError, f"tool {number} is in the spindle, so the tool table cannot be read anew",
+                          "G10", hint="Put it away first: T0 M6.")  # fmt: skip
+    sink.reload_tools()
 
 
 def _set_system(block: Block, state: State, sink: Sink, *, to_here: bool) -> None:
