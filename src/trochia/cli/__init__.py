@@ -19,6 +19,7 @@ COMMANDS = {
     "plan": "Time, length, extents and per-line timing of a program.",
     "simulate": "Run a program on the digital twin: recording and report.",
     "interpolate": "Compare the classic interpolators on a line or an arc.",
+    "profile": "A stepper's velocity profile, step by step, and whether it will do.",
     "machine": "New, show, check, import: machine files.",
 }
 

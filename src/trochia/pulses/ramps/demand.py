@@ -1,0 +1,107 @@
+"""What a move is asked to be, in the step domain.
+
+In: numbers in steps and seconds (the command line converts what a person types).  Out: a checked ``Demand``.
+Legend: alpha step angle [rad], v speed [steps/s], a acceleration [steps/s²], J inertia [kg·m²], T torque [N·m].
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from trochia.errors import LimitError
+
+if TYPE_CHECKING:
+    from trochia.pulses.ramps.curve import TorqueCurve
+
+LONGEST = 1_000_000  #: steps of one move: its table is held whole
+CLOCK = 1e6  #: timer clock unless given [Hz]
+UPDATE = 1e-3  #: longest time between two settings of the speed in the linear law [s]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Demand:
+    """A move from rest to rest, and what drives it.
+
+    Attributes
+    ----------
+    steps, steps_per_turn
+        Length of the move, and of a turn.
+    speed
+        Speed not to be exceeded [steps/s].
+    acceleration, deceleration
+        [steps/s²]; a law limited by torque needs neither, and without a deceleration it is the acceleration.
+    start_stop
+        Greatest speed to start at and stop from without losing steps [steps/s].
+    curve, load, inertia
+        Pull-out torque over speed, load torque [N·m], inertia of rotor and load [kg·m²].
+    clock
+        Of the timer that counts the delays [Hz].
+    update
+        Longest time between two settings of the speed, in the linear law [s].
+    """
+
+    steps: int
+    speed: float
+    acceleration: float | None = None
+    deceleration: float | None = None
+    steps_per_turn: int = 200
+    start_stop: float | None = None
+    curve: TorqueCurve | None = None
+    load: float = 0.0
+    inertia: float | None = None
+    clock: float = CLOCK
+    update: float = UPDATE
+
+    def __post_init__(self) -> None:
+        if not 1 <= self.steps <= LONGEST:
+            raise LimitError(f"a move has 1 to {LONGEST} steps, not {self.steps}")
+        if not 1 <= self.steps_per_turn <= LONGEST:
+            raise LimitError(f"a turn has 1 to {LONGEST} steps, not {self.steps_per_turn}")
+        for name, value in (("speed", self.speed), ("acceleration", self.acceleration), ("clock", self.clock),
+                            ("deceleration", self.deceleration), ("start/stop speed", self.start_stop),
+                            ("inertia", self.inertia), ("update time", self.update)):  # fmt: skip
+            if value is not None and not 0.0 < value < math.inf:
+                raise LimitError(f"the {name} must be more than 0, not {value:g}: such a move never arrives")
+        if not 0.0 <= self.load < math.inf:
+            raise LimitError(f"the load torque must be at least 0, not {self.load:g} N·m")
+        if self.speed > self.clock:
+            raise LimitError(
+                f"{self.speed:g} steps/s is faster than the timer's clock of {self.clock:g} Hz",
+                hint=f"At most {self.clock:g} steps/s, or a faster clock.",
+            )
+
+    @property
+    def step_angle(self) -> float:
+        """The angle of a step [rad]."""
+        return 2.0 * math.pi / self.steps_per_turn
+
+    @property
+    def rising(self) -> float:
+        """The acceleration [steps/s²].
+
+        Raises
+        ------
+        LimitError
+            Where none is given.
+        """
+        if self.acceleration is None:
+            raise LimitError(
+                "this law needs an acceleration",
+                hint='Give one, like "100 rad/s²"; the law `torque` takes it from a torque curve.',
+            )
+        return self.acceleration
+
+    @property
+    def falling(self) -> float:
+        """The deceleration [steps/s²]; errors as in :attr:`rising`."""
+        return self.rising if self.deceleration is None else self.deceleration
+
+    def said(self, speed: float) -> str:
+        """Return a speed [steps/s] as a person reads it."""
+        return f"{speed:.4g} steps/s ({60.0 * speed / self.steps_per_turn:.4g} rpm)"
+
+    def said_acceleration(self, acceleration: float) -> str:
+        """Return an acceleration [steps/s²] as a person reads it."""
+        return f"{acceleration:.4g} steps/s² ({acceleration * self.step_angle:.4g} rad/s²)"
