@@ -65,9 +65,12 @@ def _stretch(evaluate: Evaluate, low: float, high: float, tolerance: float, left
     """Yield the pieces of one stretch."""
     u = low + (high - low) * _SAMPLES
     points, slopes = evaluate(u)
-    if not np.ptp(points, axis=0).any():
-        return
+    size = float(np.ptp(points, axis=0).max())
     start, end = _vector(points[0]), _vector(points[-1])
+    if size <= 0.25 * tolerance:  # too small for its tangents to mean anything, as at a cusp
+        if start != end:
+            yield Piece(end, None, 0, hypot(end[0] - start[0], end[1] - start[1]))
+        return
     first, last = _direction(evaluate, low, high, slopes[0]), _direction(evaluate, high, low, slopes[-1])
     pieces = _biarc(start, first, end, last)
     if left and (pieces is None or _farthest(start, pieces, points) > 0.5 * tolerance):
