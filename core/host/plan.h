@@ -18,7 +18,7 @@ typedef struct {
     double matrix[162];  /* rows x axes */
     double velocity[18]; /* of each row */
     double acceleration[18];
-    double jerk[18]; /* read where jerk is limited */
+    double jerk[18];                                    /* read where jerk is limited */
     double path_velocity, path_acceleration, path_jerk; /* infinity: no cap */
 } trochia_limits;
 

@@ -31,6 +31,7 @@ DIFFERENCES = {
     "branches": "after a BREAK out of a WHILE the reference leaves the next DO loop after its first round",
     "error-python-in-comment": "the reference runs it",
     "user-codes": "the reference alone has no codes of the machine's own",
+    "error-compensation-no-table": "without a tool table the reference knows tools 1 to 3; here D is asked for",
     "tools": "without a tool table the reference knows tools 1 to 3 only; here every tool can be called",
 }
 

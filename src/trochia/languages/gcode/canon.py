@@ -38,9 +38,7 @@ _NO_BOUND = 1e30  # rpm, of a constant surface speed without D
 _TOOL_OFFSET = "USE_TOOL_LENGTH_OFFSET(%.4f %.4f %.4f, %.4f %.4f %.4f, %.4f %.4f %.4f)\n"
 
 
-def print_text(
-    text: bytes, out: BinaryIO, *, name: str, block_delete: bool = False, reading: Reading = USUAL
-) -> None:
+def print_text(text: bytes, out: BinaryIO, *, name: str, block_delete: bool = False, reading: Reading = USUAL) -> None:
     """Write the canonical functions of a program.
 
     Raises
