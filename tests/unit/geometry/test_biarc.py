@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from math import atan2, pi, sqrt
 
 import numpy as np
@@ -57,7 +58,7 @@ def test_arcs_touch_each_other():
     curve = Nurbs(np.array([[0, 0, 1], [1, 4, 1], [6, -4, 1], [9, 3, 1.0]]), 4)
     pieces = biarcs(curve.at, curve.spans, 1e-3)
     _, ends = dense(pieces, (0.0, 0.0))
-    for (_, before), (after, _) in zip(ends[:-1], ends[1:], strict=True):
+    for (_, before), (after, _) in pairwise(ends):
         assert np.allclose(before, after, atol=1e-6)
     true = curve.at(np.linspace(0, 1, 100_000))[0]
     assert sum(piece.length for piece in pieces) == pytest.approx(np.hypot(*np.diff(true, axis=0).T).sum(), abs=1e-4)
