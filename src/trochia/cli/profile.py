@@ -153,14 +153,17 @@ def _csv(profile: Profile) -> str:
 
 def _json(profile: Profile, verdict: Verdict) -> dict[str, Any]:
     """Return a profile by JSON's keys; the table is a list of rows."""
+    from trochia.pulses.ramps import RAMPS  # noqa: PLC0415 - `trochia --help` must stay light
+
     columns = {key: column.tolist() for key, column in profile.columns().items()}
+    by_torque = RAMPS[profile.law].by_torque
     return {
         "law": profile.law,
         "steps": profile.demand.steps,
         "time_s": profile.duration,
         "peak_steps_s": profile.peak,
-        "acceleration_steps_s2": profile.demand.acceleration,
-        "deceleration_steps_s2": profile.demand.deceleration or profile.demand.acceleration,
+        "acceleration_steps_s2": None if by_torque else profile.demand.rising,
+        "deceleration_steps_s2": None if by_torque else profile.demand.falling,
         "verdict": {"ok": verdict.ok, "reason": verdict.reason, "remedy": verdict.remedy},
         "table": [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)],
     }
@@ -168,10 +171,12 @@ def _json(profile: Profile, verdict: Verdict) -> dict[str, Any]:
 
 def _show(profile: Profile, verdict: Verdict) -> None:
     """Print the first and last rows, the summary, and the verdict."""
-    from trochia.pulses.ramps import COLUMNS  # noqa: PLC0415 - `trochia --help` must stay light
+    from trochia.pulses.ramps import COLUMNS, RAMPS  # noqa: PLC0415 - `trochia --help` must stay light
 
     demand = profile.demand
-    click.secho(f"{profile.title}: {demand.steps} steps in {clock(profile.duration)}", bold=True)
+    click.secho(
+        f"{profile.title}: {demand.steps} step{'s' * (demand.steps > 1)} in {clock(profile.duration)}", bold=True
+    )
     columns = profile.columns()
     size = profile.delays.size
     rows = range(size) if size <= 2 * _SHOWN + 1 else [*range(_SHOWN), None, *range(size - _SHOWN, size)]
@@ -184,7 +189,7 @@ def _show(profile: Profile, verdict: Verdict) -> None:
     reached, held = _parts(profile)
     click.echo(f"  accelerates for {reached} steps, holds {demand.said(profile.peak)} for {held}, "
                f"brakes for {size - reached - held}")  # fmt: skip
-    if profile.law != "torque" and demand.acceleration is not None:
+    if not RAMPS[profile.law].by_torque:
         click.echo(f"  acceleration {demand.said_acceleration(demand.rising)}, "
                    f"deceleration {demand.said_acceleration(demand.falling)}")  # fmt: skip
     click.secho(f"  {'It will do' if verdict.ok else 'It will not do'}: {verdict.reason}",

@@ -62,7 +62,8 @@ def test_a_torque_curve_alone_chooses_the_law(tmp_path: Path):
     curve.write_text("speed_rpm,torque_Nm\n0,0.23\n100,0.2\n200,0.1\n", encoding="utf-8")
     args = ("--steps", "400", "--speed", "190 rpm", "--torque-curve", str(curve), "--inertia", "60 g·cm²")
     done = run(*args, "--load-torque", "0.05 N·m", "--json")
-    assert (done.exit_code, json.loads(done.stdout)["law"]) == (0, "torque")
+    told = json.loads(done.stdout)
+    assert (done.exit_code, told["law"], told["acceleration_steps_s2"]) == (0, "torque", None)
 
 
 def test_a_time_box_is_its_own_requirement():

@@ -27,6 +27,8 @@ FALLING = TorqueCurve(speeds=(0.0, 200.0, 500.0, 900.0), torques=(0.3, 0.28, 0.2
     [
         ({"steps": 0}, "1 to 1000000"),
         ({"speed": 0.0}, "speed must be more than 0"),
+        ({"speed": 1e-300}, "speed must be from 1e-12 to 1e\\+12"),
+        ({"acceleration": 1e300}, "acceleration must be from 1e-12 to 1e\\+12"),
         ({"acceleration": -1.0}, "acceleration must be more than 0"),
         ({"inertia": float("inf")}, "inertia"),
         ({"load": -1.0}, "load torque"),
@@ -152,7 +154,9 @@ def test_verdicts():
     early = verdict(made, Requirement(time=2.0))
     assert (early.ok, "shorter" in early.reason) == (False, True)
     never = verdict(made, Requirement(time=0.5))
-    assert "motor that runs above" in (never.remedy or "")
+    assert "800 steps/s" in (never.remedy or "")  # 400 in 0.5 s
+    slow = verdict(replace(made, demand=replace(MOVE, start_stop=60.0)), Requirement(time=0.7))
+    assert "the first step is made at" in (slow.remedy or "")
 
 
 @pytest.mark.parametrize(

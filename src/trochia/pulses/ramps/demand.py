@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from trochia.pulses.ramps.curve import TorqueCurve
 
 LONGEST = 1_000_000  #: steps of one move: its table is held whole
+LEAST, MOST = 1e-12, 1e12  #: of every quantity in its unit: what lies outside is a slip of the pen
 CLOCK = 1e6  #: timer clock unless given [Hz]
 UPDATE = 1e-3  #: longest time between two settings of the speed in the linear law [s]
 
@@ -64,6 +65,8 @@ class Demand:
                             ("inertia", self.inertia), ("update time", self.update)):  # fmt: skip
             if value is not None and not 0.0 < value < math.inf:
                 raise LimitError(f"the {name} must be more than 0, not {value:g}: such a move never arrives")
+            if value is not None and not LEAST <= value <= MOST:
+                raise LimitError(f"the {name} must be from {LEAST:g} to {MOST:g}, not {value:g}")
         if not 0.0 <= self.load < math.inf:
             raise LimitError(f"the load torque must be at least 0, not {self.load:g} N·m")
         if self.speed > self.clock:

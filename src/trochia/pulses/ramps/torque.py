@@ -155,8 +155,8 @@ def refuse_speed(demand: Demand, reach: float) -> None:
             hint="Take a stronger motor or a lighter load.",
         )
     raise LimitError(
-        f"the speed of {demand.said(demand.speed)} is out of reach: under {demand.load:g} N·m the torque curve ends "
-        f"at {demand.said(reach)}",
+        f"the speed of {demand.said(demand.speed)} is out of reach: under {demand.load:g} N·m the torque curve "
+        f"reaches {demand.said(reach)}",
         hint=f"At most {demand.said(SAFE * reach)} would do ({SAFE:.0%} of it).",
     )
 

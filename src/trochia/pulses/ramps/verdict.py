@@ -45,7 +45,7 @@ def judge(profile: Profile, requirement: Requirement | None, better: Callable[[f
     demand, took = profile.demand, profile.duration
     peak = f"peak {demand.said(profile.peak)}"
     if requirement is None:
-        return Verdict(ok=True, reason=f"{demand.steps} steps in {took:.4g} s, {peak}")
+        return Verdict(ok=True, reason=f"all in {took:.4g} s, {peak}")
     low, high = requirement.band
     band = f"{requirement.time:g} s ±{100 * requirement.tolerance:g} % ({low:.4g} to {high:.4g} s)"
     if low <= took <= high:
@@ -60,8 +60,7 @@ def _remedy(demand: Demand, time: float, better: Callable[[float], Profile]) -> 
     try:
         cure = better(time)
     except LimitError as error:
-        hint = f" {error.hint}" if error.hint else ""
-        return f"No acceleration does it: {error.message}.{hint}"
+        return f"No acceleration does it: {error.message}; take a motor with a higher pull-out or start/stop speed."
     return (
         f"With {demand.said_acceleration(cure.demand.rising)} up and down it takes {cure.duration:.4g} s; its "
         f"first step is made at {demand.said(float(cure.speeds[0]))}."
