@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from trochia.pulses.ramps.demand import Demand
 
-_ROUNDS = 80  # of halving the logarithm
+_ROUNDS = 40  # of halving the logarithm: to 4e-11 of the acceleration
 _WIDEST = 1e12  # steps/s²: an acceleration that is none any more
 
 
