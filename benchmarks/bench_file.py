@@ -15,7 +15,6 @@ from pathlib import Path
 from harness import Case, command, report
 
 LINES = 1_000_000
-LONGEST = 2.0  #: s the whole command may take
 
 
 def write(path: Path) -> None:
@@ -36,12 +35,16 @@ def main() -> None:
         trochia = Path(sys.executable).with_name("trochia")
         cases = [
             Case(
-                name=f"trochia {verb}",
-                call=command([trochia, verb, part, "-m", "reference-mill"], Path(folder)),
+                name=f"trochia {verb} --profile {profile}",
+                call=command([trochia, verb, part, "-m", "reference-mill", "--profile", profile], Path(folder)),
                 count=LINES,
-                target=LINES / LONGEST,
+                target=LINES / longest,
             )
-            for verb in ("plan", "check")
+            for verb, profile, longest in (
+                ("check", "trapezoid", 2.0),
+                ("plan", "trapezoid", 2.0),
+                ("plan", "s-curve", 4.0),
+            )
         ]
         if shutil.which("rs274"):
             cases.insert(
