@@ -5,6 +5,7 @@ In: a verdict with its plan and the program's text.  Out: a :class:`Proof`, and 
 
 from __future__ import annotations
 
+import math
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
 
     Blocks = Iterator[Mapping[str, NDArray[Any]]]
     Progress = Callable[[str, float], None]
+
+MOST_SAMPLES = 2_000_000  #: of a recording whose sampling nobody chose: some 300 MB for three axes
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -69,7 +72,8 @@ def prove(
     Parameters
     ----------
     period
-        Time between samples [s]; without it the machine's servo period.
+        Time between samples [s]; without it the machine's servo period, or so many of them that a long program's
+        recording has at most :data:`MOST_SAMPLES`.
     progress
         Is told the step and the fraction done.
     """
@@ -77,7 +81,7 @@ def prove(
     if plan is None:
         raise ValueError("only a verdict with a plan can be proved")
     folder.mkdir(parents=True, exist_ok=True)
-    twin = Twin(machine=plan.machine, period=period)
+    twin = Twin(machine=plan.machine, period=period or _period(plan))
     blocks = _told(twin.run(plan.trajectory), twin.tick / plan.time_s if plan.time_s else 1.0, progress)
     recorder.write(folder / "recording", twin.header(plan.trajectory, program=plan.program.name), blocks)
     recording = recorder.read(folder / "recording")
@@ -95,6 +99,12 @@ def prove(
             for name, file in (("report", "report.html"), ("picture", "path.png"), ("recording", "recording"))
         },
     )
+
+
+def _period(plan: Plan) -> float:
+    """Return the sampling of a recording nobody chose one for [s]."""
+    servo = plan.machine.servo_period
+    return servo * max(1, math.ceil(plan.time_s / servo / MOST_SAMPLES))
 
 
 def _told(blocks: Blocks, fraction: float, progress: Progress | None) -> Blocks:

@@ -37,7 +37,7 @@ def _period(_context: click.Context, _parameter: click.Parameter, value: str | N
 @click.option("-o", "--output", type=click.Path(file_okay=False, path_type=Path), default=Path("out"),
               show_default=True, help="Folder for recording, report and picture.")  # fmt: skip
 @click.option("--rate", "period", callback=_period, metavar="TIME|FREQUENCY",
-              help="Sampling of the recording; without it the machine's servo period.")  # fmt: skip
+              help="Sampling of the recording; else the servo period, longer for long programs.")  # fmt: skip
 def command(
     *, program: str, machine_name: str, place: dict[str, float], profile: str | None, as_json: bool, reading: Reading,
     output: Path, period: float | None,
@@ -70,4 +70,7 @@ def command(
     if lost:
         click.echo("lost steps: " + ", ".join(f"{joint} {n}" for joint, n in lost.items()))
     show_verdict(job.verdict)
+    every, servo = (1000 * seconds for seconds in (proof.recording.period, job.verdict.plan.machine.servo_period))
+    if every > servo and period is None:
+        click.echo(f'recorded every {every:g} ms, for it is long; --rate "{servo:g} ms" records every servo period')
     click.echo(f"report   {proof.files['report']}")
