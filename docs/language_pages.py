@@ -11,6 +11,7 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from trochia.languages.gcode.polar import POLAR
 from trochia.languages.gcode.registry import G_CODES, M_CODES, ORDER, WORDS
 
 if TYPE_CHECKING:
@@ -56,8 +57,8 @@ def group_page(group: str, codes: list[Code], known: dict[str, str]) -> str:
 
 
 def words_page() -> str:
-    """Return the page of the words that act by themselves."""
-    lines = ["# Words that act by themselves", ""]
+    """Return the page of the words that act by themselves, and of those that stand for X and Y."""
+    lines = ["# Words that act by themselves or stand for others", ""]
     for word in WORDS.values():
         lines += [
             f"## {word.letter.upper()}",
@@ -65,6 +66,8 @@ def words_page() -> str:
             f"{word.about[:1].upper()}{word.about[1:]}; acts at: {word.step}.",
             "",
         ]
+    for letter, about in POLAR.items():
+        lines += [f"## {letter}", "", f"{about[:1].upper()}{about[1:]}; acts at: motion.", ""]
     return "\n".join(lines)
 
 

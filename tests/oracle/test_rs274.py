@@ -124,7 +124,11 @@ WILD = st.lists(
         st.tuples(_of(*"ijkrpqfshlde"), NUMBER).map("".join).filter(lambda word: not re.match(r"q-1\.?0*$", word)),
     ), min_size=1, max_size=4,
 ).map(" ".join)  # fmt: skip
-GOOD = st.one_of(STRAIGHT, STRAIGHT, ARC_BY_RADIUS, arc_by_centre(), MODES, MODES, OFFSETS, TEXTS)
+POLAR = st.one_of(
+    _line(_of("g90 g17 g0", "g90 g17 g1 f9"), NUMBER.map("@{}".format), NUMBER.map("^{}".format)),
+    st.tuples(_of("", "g0 ", "g91 g1 ", "g90 g0 "), _of("@", "^"), NUMBER).map("".join),
+)
+GOOD = st.one_of(STRAIGHT, STRAIGHT, ARC_BY_RADIUS, arc_by_centre(), MODES, MODES, POLAR, OFFSETS, TEXTS)
 
 
 @given(lines=st.lists(GOOD, min_size=5, max_size=40), last=st.one_of(st.just("m2"), st.just("m30"), WILD))

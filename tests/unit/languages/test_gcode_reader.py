@@ -1,6 +1,6 @@
 import pytest
 
-from trochia.errors import ParseError, UnknownCodeError
+from trochia.errors import ParseError
 from trochia.languages.gcode.place import Place, column_of
 from trochia.languages.gcode.reader import LONGEST_LINE, read_line
 
@@ -81,13 +81,8 @@ def test_an_error_points_at_its_column(text, column):
     assert caught.value.text == text
 
 
-@pytest.mark.parametrize(("text", "column"), [("G0 @1 ^2", 4)])
-def test_what_the_language_has_but_this_release_not_is_said_so(text, column):
-    with pytest.raises(UnknownCodeError) as caught:
-        read(text)
-    assert caught.value.source is not None
-    assert caught.value.source.column == column
-    assert "not known here" in caught.value.message
+def test_polar_words_are_words():
+    assert [word[:2] for word in read("g0 @1.5 ^[2 * 30]").words] == [("g", 0.0), ("@", 1.5), ("^", 60.0)]
 
 
 def test_a_line_may_be_as_long_as_the_reference_allows():

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from trochia.errors import ModalConflictError, ParseError, ProgramError, UnknownCodeError
 from trochia.languages.gcode.numbers import as_integer
+from trochia.languages.gcode.polar import POLAR
 from trochia.languages.gcode.registry import G_CODES, G_TENTH, M_CODES, MOST_M_CODES, WORDS
 
 if TYPE_CHECKING:
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 _Error = TypeVar("_Error", bound=ProgramError)
 
 AXIS = {letter: column for column, letter in enumerate("xyzabcuvw")}
-_VALUES = frozenset("dehijklpqr$") | frozenset(WORDS) | frozenset(AXIS)
+_VALUES = frozenset("dehijklpqr$") | frozenset(POLAR) | frozenset(WORDS) | frozenset(AXIS)
 _NOT_NEGATIVE = frozenset("fst")
 _WHOLE = frozenset("l")
 _USER_CODES = 1000  # tenths: from M100 on
@@ -64,11 +65,21 @@ class Block:
     dropped: bool = False
 
     @property
+    def is_polar(self) -> bool:
+        """Polar words stand for X and Y."""
+        return "@" in self.values or "^" in self.values
+
+    @property
+    def has_target(self) -> bool:
+        """The line has axis words, or polar words in their place."""
+        return bool(self.axes) or self.is_polar
+
+    @property
     def mover(self) -> str:
         """The word to point at when the line's motion is at fault: its code, or the first axis or centre word."""
         if self.motion is not None and self.motion.name in self.where:
             return self.motion.name
-        movers = [letter for letter in self.values if letter in AXIS or letter in "ijkr"]
+        movers = [letter for letter in self.values if letter in AXIS or letter in "ijkr@^"]
         return min(movers, key=self.where.__getitem__, default="")
 
     def fault(self, kind: type[_Error], message: str, word: str = "", *, hint: str | None = None) -> _Error:
@@ -106,7 +117,11 @@ def _add_value(block: Block, word: Word, allowed: str) -> None:
     if letter in block.values:
         raise block.place.fault(ParseError, f"the word {letter.upper()} stands twice on the line", at,
                                 hint="Keep one of them.")  # fmt: skip
-    if letter not in _VALUES or (letter in AXIS and letter not in allowed):
+    if (
+        letter not in _VALUES
+        or (letter in AXIS and letter not in allowed)
+        or (letter in POLAR and not ("x" in allowed and "y" in allowed))
+    ):
         raise block.place.fault(UnknownCodeError, f"there is no word {letter.upper()} here", at,
                                 hint=f"Axis words are {' '.join(allowed.upper())}.")  # fmt: skip
     if letter in _NOT_NEGATIVE and value < 0:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from trochia.errors import ModalConflictError, ParseError
 from trochia.languages.gcode.groups.diameter import halve
 from trochia.languages.gcode.numbers import as_integer
+from trochia.languages.gcode.polar import POLAR, check_polar
 from trochia.languages.gcode.registry import G_CODES, WORDS
 from trochia.languages.gcode.state import NO_MOTION
 
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
 _ARCS = (20, 30)
 _ARC_CODES = ("G2", "G3")
-_OPEN = frozenset(WORDS) | frozenset("xyzabcuvw")  # letters that need no code beside them
+_OPEN = frozenset(WORDS) | frozenset("xyzabcuvw") | frozenset(POLAR)  # letters that need no code beside them
 _WHOLE_TURNS = 1e-3  # P of an arc may miss an integer by this
 
 
@@ -38,6 +39,8 @@ def check(block: Block, state: State) -> None:
     block.motion = _motion_of(block, state)
     if len(block.values) > len(block.axes):
         _check_readers(block)
+        if block.is_polar:
+            check_polar(block, state)
     other = block.groups.get("non-modal")
     if other is not None:
         _check_non_modal(block, state, other)
@@ -59,7 +62,7 @@ def _motion_of(block: Block, state: State) -> Code | None:
         return explicit
     if taker is not None or "G43.1" in block.where:
         return None
-    if block.axes:
+    if block.has_target:
         return _modal_motion(block, state, explicit)
     if explicit is None and state.motion in _ARCS and not block.values.keys().isdisjoint("ijk"):
         return G_CODES[state.motion]
@@ -70,7 +73,7 @@ def _modal_motion(block: Block, state: State, explicit: Code | None) -> Code:
     """Return the modal motion code that takes the line's axis words."""
     if explicit is None and state.motion != NO_MOTION:
         return G_CODES[state.motion]
-    first = min((letter for letter in block.values if letter in "xyzabcuvw"), key=lambda letter: block.where[letter])
+    first = min((letter for letter in block.values if letter in "xyzabcuvw@^"), key=lambda letter: block.where[letter])
     why = "G80 stands on the line" if explicit is not None else "no motion code is in force"
     raise block.fault(ModalConflictError, f"nothing takes the axis word {first.upper()}: {why}", first,
                       hint="Write G0, G1, G2 or G3.")  # fmt: skip

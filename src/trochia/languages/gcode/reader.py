@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 
-from trochia.errors import ParseError, UnknownCodeError
+from trochia.errors import ParseError
 from trochia.languages.gcode.expression import Expressions
 from trochia.languages.gcode.owords import read_control, read_program_control
 from trochia.languages.gcode.parameters import Parameters
@@ -21,7 +21,6 @@ LONGEST_LINE = 252  #: characters a line may have, its end not counted
 
 _LINE_NUMBER = re.compile(r"n[0-9]+(?:\.[0-9]+)?")
 _COMMENT = re.compile(rb"\(([^()]*)\)")
-_LATER = {"@": "polar words", "^": "polar words"}
 _HINTS = {
     "/": "Block delete stands at the beginning of the line.",
     "n": "A line number is the first word of its line: N10.",
@@ -47,8 +46,6 @@ def read_template(place: Place, parameters: Parameters) -> Template:
     ------
     ParseError
         For a comment that is not closed or nested, a character that begins no word, a word without a number.
-    UnknownCodeError
-        For a word this release does not have.
     """
     raw, comment = check_comments(place)
     text = raw.translate(None, BLANKS).lower().decode("latin-1")
@@ -89,7 +86,7 @@ def _items(text: str, at: int, expressions: Expressions, place: Place) -> list[I
         elif letter == "#":
             item, at = _assignment(text, at, expressions, place)
             items.append(item)
-        elif not ("a" <= letter <= "z" or letter == "$") or letter in "no":
+        elif not ("a" <= letter <= "z" or letter in "$@^") or letter in "no":
             raise _bad_character(letter, at, place)
         else:
             value, end = expressions.value(at + 1)
@@ -107,10 +104,8 @@ def _assignment(text: str, at: int, expressions: Expressions, place: Place) -> t
     return Item("#", value, at, target), after
 
 
-def _bad_character(letter: str, at: int, place: Place) -> ParseError | UnknownCodeError:
+def _bad_character(letter: str, at: int, place: Place) -> ParseError:
     """Return the error for a character that begins no word."""
-    if letter in _LATER:
-        return place.fault(UnknownCodeError, f"{letter.upper()!r}: {_LATER[letter]} are not known here", at)
     hint = "A number stands behind its letter." if letter in ".+-0123456789" else _HINTS.get(letter)
     return place.fault(ParseError, f"{letter.upper()!r} begins no word", at, hint=hint)
 

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 from trochia.errors import ModalConflictError, ParseError
 from trochia.languages.gcode.codes import Code, key_of
+from trochia.languages.gcode.polar import polar_point, polar_step
 from trochia.program.modes import AXES, PathMode, TimeLaw
 
 if TYPE_CHECKING:
@@ -120,7 +121,7 @@ def _check(block: Block, state: State) -> None:
     """Check the axis words before anything acts."""
     del state
     name = "" if block.motion is None else block.motion.name
-    if not block.axes:
+    if not block.has_target:
         raise block.fault(ParseError, f"{name} has no axis word", name, hint="Write where the hole is, like X10.")
     for column in block.axes:
         if column >= _LINEAR:
@@ -208,6 +209,8 @@ def _hole(name: str, block: Block, state: State, sink: Sink) -> Hole:
     hole.first, hole.second = state.position[first], state.position[second]
     if state.absolute:
         hole.first, hole.second = block.axes.get(first, hole.first), block.axes.get(second, hole.second)
+        if block.is_polar:
+            hole.first, hole.second = polar_point(block, (hole.first, hole.second))
     return hole
 
 
@@ -227,6 +230,8 @@ def _position(hole: Hole) -> None:
     if not state.absolute:
         hole.first += hole.block.axes.get(first, 0.0)
         hole.second += hole.block.axes.get(second, 0.0)
+        if hole.block.is_polar:
+            hole.first, hole.second = polar_step(hole.block, (hole.first, hole.second), nothing_stays=True)
     here = state.position[state.plane.normal]
     level = here if here > hole.clear else hole.back
     state.position = hole.point(level)

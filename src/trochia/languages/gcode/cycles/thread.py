@@ -163,7 +163,7 @@ def _thread(block: Block, state: State, end: list[float]) -> Thread:
 def _check(block: Block, state: State) -> None:
     """Check the words before anything acts."""
     del state
-    if not block.axes:
+    if not block.has_target:
         raise block.fault(ParseError, "G76 has no axis word", "G76", hint="Write where the thread ends: Z.")
     for letter, what in (("p", "the pitch"), ("i", "the way from the drive line to the crest"),
                          ("j", "the depth of the first pass"), ("k", "the depth of the thread")):  # fmt: skip

@@ -74,7 +74,7 @@ def _form_of(block: Block, state: State) -> str:
         if offsets:
             raise block.fault(ParseError, f"R and {offsets[0].upper()} cannot both say where the centre is", "r",
                               hint="Use R alone, or I J K alone.")  # fmt: skip
-        if not any(axis in block.axes for axis in state.plane.axes):
+        if not block.is_polar and not any(axis in block.axes for axis in state.plane.axes):
             raise block.fault(ParseError, f"an arc by R needs its end: {plane[0]} or {plane[1]}", "r")
         return "radius"
     if not offsets:

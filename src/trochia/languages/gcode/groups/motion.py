@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from trochia.errors import ModalConflictError, ParseError
 from trochia.languages.gcode.codes import Code, table
 from trochia.languages.gcode.frames import base_of, turned
+from trochia.languages.gcode.polar import polar_target
 from trochia.languages.gcode.state import NO_MOTION
 from trochia.program.modes import TimeLaw
 
@@ -57,7 +58,7 @@ def use_machine_coordinates(block: Block, state: State, sink: Sink) -> None:
 def target_of(block: Block, state: State) -> list[float]:
     """Return where the axis words lead (9), program coordinates."""
     end = state.position.copy()
-    if block.in_machine:
+    if block.in_machine and not block.is_polar:
         return _machine_target(block.axes, state)
     if state.absolute:
         for axis, value in block.axes.items():
@@ -65,6 +66,8 @@ def target_of(block: Block, state: State) -> list[float]:
     else:
         for axis, value in block.axes.items():
             end[axis] += value
+    if len(block.values) > len(block.axes) and block.is_polar:
+        end[0], end[1] = polar_target(block, state)
     return end
 
 

@@ -58,7 +58,7 @@ def _check(block: Block, state: State) -> None:
     """Check the words before anything acts."""
     del state
     assert block.motion is not None
-    if not block.axes:
+    if not block.has_target:
         raise block.fault(ParseError, f"{block.motion.name} has no axis word", block.motion.name,
                           hint="Write how far to probe, like Z-10.")  # fmt: skip
 

@@ -56,7 +56,7 @@ def _check(block: Block, state: State) -> None:
     del state
     assert block.motion is not None
     name = block.motion.name
-    if not block.axes:
+    if not block.has_target:
         raise block.fault(ParseError, f"{name} has no axis word", name, hint="Write where it ends, like Z-10.")
     if "k" not in block.values:
         raise block.fault(ParseError, f"{name} needs K on every line", block.mover, hint="K is the way for each turn.")
