@@ -197,7 +197,12 @@ def _scaled(word: _Word, unit: float) -> str:
         return word.text
     if word.value.startswith("["):
         return f"P[{word.value}*{unit:g}]"
-    return f"P{float(word.value) * unit:.10g}"
+    try:
+        seconds = float(word.value) * unit
+    except ValueError:  # no number: the reader says so
+        return word.text
+    text = f"{seconds:.10g}"
+    return f"P{seconds:.12f}" if "e" in text else f"P{text}"
 
 
 def _negative(value: str) -> str:

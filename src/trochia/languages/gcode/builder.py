@@ -53,6 +53,7 @@ if TYPE_CHECKING:
 
 _BATCH = 8192  # rows that gather before they are converted
 _NO_CENTRE = (0.0, 0.0)
+_MOST_POWER = 3.4e38  # what a column of single precision can hold
 _KIND, _LINE, _TURNS, _RATE, _POWER, _CENTRE, _TARGET = 0, 1, 2, 3, 4, slice(5, 7), slice(7, 16)
 
 
@@ -165,7 +166,7 @@ class Builder(SpecialMoves):
     @property
     def _speed_or_one(self) -> float:
         """Speed or power that S asks for; 1 where no S was given."""
-        return 1.0 if self._speed is None else self._speed
+        return 1.0 if self._speed is None else min(self._speed, _MOST_POWER)
 
     @property
     def _at(self) -> int:

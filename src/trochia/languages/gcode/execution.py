@@ -66,5 +66,7 @@ def pretend_done(block: Block | None, state: State) -> None:
         state.motion = key_of(float(block.motion.name[1:]))
     elif block.axes and state.motion == NO_MOTION:
         state.motion = 0
+    for word in ("r", "depth", "initial"):  # a cycle that was refused may lack what its next line takes from it
+        state.cycle_words.setdefault(word, state.position[state.plane.normal])
     state.feed = state.feed or 1.0
     state.speed = state.speed or 1.0

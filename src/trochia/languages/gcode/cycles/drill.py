@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from trochia.errors import ParseError
 from trochia.languages.gcode.codes import table
-from trochia.languages.gcode.cycles.hole import hole_cycle
+from trochia.languages.gcode.cycles.hole import MOST_TIMES, hole_cycle
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -49,6 +49,10 @@ def _pecks(hole: Hole) -> Iterator[float]:
     step = hole.words["q"]
     if step <= 0:
         raise hole.block.fault(ParseError, f"{hole.name} needs Q above 0", "q", hint="Q is the depth of one peck.")
+    if (hole.clear - hole.bottom) / step * hole.block.values.get("l", 1.0) > MOST_TIMES:
+        word = "q" if "q" in hole.block.values else hole.block.mover
+        raise hole.block.fault(ParseError, f"{hole.name} would peck more than {MOST_TIMES} times", word,
+                               hint="Write a greater Q.")  # fmt: skip
     depth = hole.clear - step
     while depth > hole.bottom:
         hole.feed(depth)

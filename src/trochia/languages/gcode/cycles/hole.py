@@ -32,6 +32,7 @@ HOLE_CYCLES = frozenset(10 * number for number in (73, 74, *range(81, 90)))
 _LINEAR = 3  # columns before this one are X, Y, Z
 _INITIAL = "initial"
 _NONE = -1.0  # a Q of this value counts as none
+MOST_TIMES = 10_000  #: holes and pecks of one line, where the reference has no bound
 DWELL = "dwell"  #: the last P of any cycle, which tapping cycles take when they have none
 
 
@@ -181,6 +182,9 @@ def _repeats(block: Block) -> int:
     repeats = round(block.values.get("l", 1.0))
     if repeats == 0:
         raise block.fault(ParseError, "a cycle cannot be repeated 0 times", "l", hint="Leave L out, or write L1.")
+    if repeats > MOST_TIMES:
+        raise block.fault(ParseError, f"a line may repeat a cycle at most {MOST_TIMES} times", "l",
+                          hint="Write it on more lines, or in a loop.")  # fmt: skip
     return repeats
 
 

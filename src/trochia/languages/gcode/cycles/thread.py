@@ -9,7 +9,7 @@ taper at the beginning (L1), the end (L2), or both (L3); along it the pitch coun
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import copysign, hypot, radians, tan
+from math import copysign, hypot, log, radians, tan
 from typing import TYPE_CHECKING
 
 from trochia.errors import ModalConflictError, ParseError
@@ -29,6 +29,7 @@ _X, _Z = 0, 2
 _ENTRY, _EXIT = (1, 3), (2, 3)  # values of L
 _REACHED = 1e-12  # a pass this close to the depth of the thread is the last one
 _STEEPEST = 90.0  # degree: at this angle of the slide there is no thread
+_MOST_PASSES = 10_000  # of one line, where the reference has no bound
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -143,6 +144,7 @@ def _thread(block: Block, state: State, end: list[float]) -> Thread:
                           hint="K is the depth of the thread, J that of the first pass.")  # fmt: skip
     if abs(value.get("q", 0.0)) >= _STEEPEST:
         raise block.fault(ParseError, "Q of G76 must be below 90 degrees", "q", hint="Q29.5 is usual.")
+    _require_few_passes(block)
     scale = 0.5 if state.diameter else 1.0
     taper, where = max(value.get("e", 0.0), 0.0), round(value.get("l", 0.0))
     return Thread(
@@ -158,6 +160,15 @@ def _thread(block: Block, state: State, end: list[float]) -> Thread:
         entry=taper if where in _ENTRY else 0.0,
         exit=taper if where in _EXIT else 0.0,
     )
+
+
+def _require_few_passes(block: Block) -> None:
+    """Refuse a thread of so many passes that it would never end: from pass to pass R and J lead to K, then H more."""
+    value = block.values
+    passes = max(value.get("r", 1.0), 1.0) * log(value["k"] / value["j"])  # logarithm of their number
+    if passes > log(_MOST_PASSES) or value.get("h", 0.0) > _MOST_PASSES:
+        raise block.fault(ParseError, f"G76 would take more than {_MOST_PASSES} passes", block.mover,
+                          hint="Write a greater J, or a smaller R or H.")  # fmt: skip
 
 
 def _check(block: Block, state: State) -> None:

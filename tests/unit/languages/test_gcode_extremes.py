@@ -1,0 +1,52 @@
+"""Programs that mutation found: what they ask for is too much, or follows on a line that was refused."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from trochia.errors import ParseError
+from trochia.languages.gcode import DIALECTS, Reading, problems, read
+
+THREAD = "F1 S1 M3\nG76 Z-1 P1 I1 J0.1 K1 "
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["G81 R1\nG8 X1\nM2\n", "G74 K0\nG8 Z1 R1\nM2\n", "G81\nX5\nM2\n"],
+    ids=["no depth", "no initial level", "no R"],
+)
+def test_a_cycle_behind_one_that_was_refused(text: str):
+    assert problems(text)[0].source.line == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("F1\nG81 X1 Z-1 R1 L999999999\nM2\n", "at most 10000 times"),
+        ("F1\nG83 X1 Z-1 R1 Q0.000000001\nM2\n", "more than 10000 times"),
+        ("F1\nG73 X1 Z-1 R1 Q0.001 L9\nM2\n", "more than 10000 times"),
+        (THREAD + "H99999999\nM2\n", "more than 10000 passes"),
+        (THREAD + "R400\nM2\n", "more than 10000 passes"),
+    ],
+)
+def test_a_line_that_would_hardly_end(text: str, told: str):
+    with pytest.raises(ParseError, match=told) as caught:
+        read(text)
+    assert caught.value.source is not None
+    assert caught.value.source.line == 2
+
+
+@pytest.mark.parametrize("text", ["S[10**300] M3\nF1\nG8 G1 X2\nG1 X3\nM2\n", "F1 S[10**300] M3\nG1 X1\nM2\n"])
+def test_a_speed_beyond_single_precision(text: str):
+    assert np.isfinite(read(text).moves["power"]).all()
+
+
+def test_a_dwell_of_another_dialect_that_is_no_number():
+    with pytest.raises(ParseError, match="is no number"):
+        read("G4 P1..5\nM2\n", reading=Reading(dialect=DIALECTS["marlin"]))
+
+
+def test_a_dwell_of_another_dialect_is_written_without_exponent():
+    program = read("G4 P0.0001\nM2\n", reading=Reading(dialect=DIALECTS["marlin"]))
+    assert program.actions[0].seconds == pytest.approx(1e-7)
