@@ -14,6 +14,8 @@ CORE   := $(wildcard core/*.py core/host/*.[ch] core/shared/*.[ch])
 C_CODE := $(wildcard core/host/*.[ch] core/shared/*.[ch])
 C_FLAGS := -std=c11 -O2 -Wall -Wextra -Wconversion -Wswitch-enum -Werror -ffp-contract=off
 JOBS   ?= 2
+SOAK   ?= 1000000
+SOAK_SEED ?= 1
 
 .DEFAULT_GOAL := help
 .PHONY: help setup setup-test run test check format lint types layers c-format c-warnings sanitise docs bench soak golden oracle clean
@@ -80,9 +82,11 @@ bench: setup-test
 golden: setup-test
 	$(BIN)/python tests/golden/rewrite.py
 
-# every law and every comparison, on a hundred times as many cases, with a seed that is printed
+# every law and every comparison, on a hundred times as many cases, with a seed that is printed; then SOAK mutated
+# G-code programs from SOAK_SEED on
 soak: setup-test
 	$(BIN)/python -m pytest -q --hypothesis-profile=soak tests/properties tests/oracle
+	$(BIN)/python tests/soak/fuzz_gcode.py --count $(SOAK) --seed $(SOAK_SEED) --jobs $(JOBS)
 
 oracle: setup-test
 	$(BIN)/python -m pytest -q tests/oracle
