@@ -59,7 +59,7 @@ class Thread:
     @property
     def along(self) -> float:
         """Return the direction of cutting along Z."""
-        return -1.0 if self.end_z < self.start[_Z] else 1.0
+        return -1.0 if self.end_z <= self.start[_Z] else 1.0
 
     @property
     def tapered_pitch(self) -> float:
