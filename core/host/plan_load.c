@@ -4,6 +4,7 @@
  * the greater of their values by at most length^2 / 8 times the bound of that ("sag").  A line has no q'', and on a
  * parabola f is linear in s, so both are exact; arcs are cut into small pieces. */
 #include "host/plan_span.h"
+#include "host/limits.h"
 
 #include <math.h>
 
@@ -27,22 +28,6 @@ uint32_t trochia_span_parts(const trochia_segment *segment, const double *pool, 
         parts = fmin(16.0, ceil(length * sqrt(third * 5.0 / (8.0 * CUBIC_SAG))));
     }
     return (uint32_t)fmin(fmax(parts, 1.0), 4e9);
-}
-
-static double dot_row(const trochia_limits *limits, uint32_t row, const double *vector) {
-    if (row < limits->axes)
-        return vector[row];
-    double sum = 0.0;
-    for (uint32_t i = 0; i < limits->axes; i++)
-        sum += limits->matrix[row * limits->axes + i] * vector[i];
-    return sum;
-}
-
-static double norm(const double *vector, uint32_t n) {
-    double square = 0.0;
-    for (uint32_t i = 0; i < n; i++)
-        square += vector[i] * vector[i];
-    return sqrt(square);
 }
 
 trochia_bounds trochia_bounds_of(const trochia_limits *limits) {
@@ -79,12 +64,12 @@ static void load_line(const trochia_segment *segment, const double *direction, c
     const trochia_limits *limits = bounds->limits;
     double slowness = 0.0, effort = 0.0;
     if (bounds->capped) {
-        double size = norm(direction, limits->linear);
+        double size = trochia_norm(direction, limits->linear);
         slowness = size * bounds->path_slowness;
         effort = size * bounds->path_effort;
     }
     for (uint32_t i = 0; i < limits->rows; i++) {
-        double size = fabs(dot_row(limits, i, direction));
+        double size = fabs(trochia_dot_row(limits, i, direction));
         slowness = larger(slowness, size * bounds->slowness[i]);
         effort = larger(effort, size * bounds->effort[i]);
     }
@@ -143,10 +128,10 @@ static void bounds(const trochia_segment *segment, const double *pool, const tro
         for (uint32_t i = 0; i < n; i++)
             vector[i] = 6.0 * c[3 * n + i];
         for (uint32_t i = 0; i < limits->rows; i++) {
-            third[i] = fabs(dot_row(limits, i, vector));
+            third[i] = fabs(trochia_dot_row(limits, i, vector));
             fourth[i] = 0.0;
         }
-        third[limits->rows] = norm(vector, limits->linear);
+        third[limits->rows] = trochia_norm(vector, limits->linear);
         fourth[limits->rows] = 0.0;
         return;
     }
@@ -170,7 +155,7 @@ static void load_cap(const trochia_limits *limits, double x[2][27], double sag3,
             span->along[end][i] = i < limits->linear ? x[end][limits->axes + i] * scale : 0.0;
             span->bend[end][i] = i < limits->linear ? x[end][2 * limits->axes + i] * scale : 0.0;
         }
-        size[end] = norm(span->bend[end], 3);
+        size[end] = trochia_norm(span->bend[end], 3);
     }
     span->cap_w = sag4 * scale;
     span->cap_a = 5.0 * sag3 * scale;
@@ -178,7 +163,9 @@ static void load_cap(const trochia_limits *limits, double x[2][27], double sag3,
         span->ceiling[end] = fmin(span->ceiling[end], 1.0 / (size[end] + span->cap_w));
     if (span->capped)
         span->inside = fmin(span->inside, 1.0 / (fmax(size[0], size[1]) + span->cap_w));
-    double along = fmax(norm(x[0] + limits->axes, limits->linear), norm(x[1] + limits->axes, limits->linear)) + sag3;
+    double along =
+        fmax(trochia_norm(x[0] + limits->axes, limits->linear), trochia_norm(x[1] + limits->axes, limits->linear)) +
+        sag3;
     double slowness = along / limits->path_velocity;
     span->feed = fmin(span->feed, 1.0 / (slowness * slowness));
 }
@@ -196,10 +183,10 @@ static double stretch_of(const trochia_segment *segment, const double *pool, con
         /* r phi' is a product of two lines in s, greatest halfway between their roots */
         double twist = 2.0 * c[6 + 2 * n], at = -0.5 * (c[2] / c[5] + c[4] / twist);
         at = fmin(fmax(at, 0.0), segment->length);
-        double around = (c[2] + c[5] * at) * (c[4] + twist * at), rise = norm(c + 6 + n, linear);
+        double around = (c[2] + c[5] * at) * (c[4] + twist * at), rise = trochia_norm(c + 6 + n, linear);
         stretch = sqrt(around * around + c[5] * c[5] + rise * rise);
     } else if (linear)
-        stretch = fmax(norm(x[0] + n, linear), norm(x[1] + n, linear)) + sag;
+        stretch = fmax(trochia_norm(x[0] + n, linear), trochia_norm(x[1] + n, linear)) + sag;
     return stretch > 1.0 + 1e-12 ? stretch : 1.0;
 }
 
@@ -220,7 +207,8 @@ static void load_curve(const trochia_segment *segment, const double *pool, const
         span->sag_w[i] = eighth * fourth[i] * scale;
         span->sag_a[i] = 5.0 * eighth * third[i] * scale;
         for (int end = 0; end < 2; end++) {
-            double t = dot_row(limits, i, x[end] + limits->axes), k = dot_row(limits, i, x[end] + 2 * limits->axes);
+            double t = trochia_dot_row(limits, i, x[end] + limits->axes),
+                   k = trochia_dot_row(limits, i, x[end] + 2 * limits->axes);
             span->t[end][i] = t * scale;
             span->k[end][i] = k * scale;
             held[end] = fmax(held[end], fabs(k) * scale + span->sag_w[i]);

@@ -1,6 +1,7 @@
 /* The limits of each stretch of a path: the greatest derivatives of every limited quantity along it. */
 #include <math.h>
 
+#include "host/limits.h"
 #include "host/scurve_ramp.h"
 
 static const double ARC_PART = 0.2618; /* rad: 15 degrees; a row sees cosine and sine of its own part of the circle */
@@ -30,22 +31,6 @@ uint64_t trochia_scurve_count(const trochia_segment *segments, const double *poo
     for (uint64_t k = 0; k < count; k++)
         stretches += parts_of(&segments[k], pool, axes);
     return stretches;
-}
-
-static double dot_row(const trochia_limits *limits, uint32_t row, const double *vector) {
-    if (row < limits->axes)
-        return vector[row];
-    double sum = 0.0;
-    for (uint32_t i = 0; i < limits->axes; i++)
-        sum += limits->matrix[row * limits->axes + i] * vector[i];
-    return sum;
-}
-
-static double norm(const double *vector, uint32_t n) {
-    double square = 0.0;
-    for (uint32_t i = 0; i < n; i++)
-        square += vector[i] * vector[i];
-    return sqrt(square);
 }
 
 /* Greatest |cos| over [from, to]. */
@@ -100,10 +85,10 @@ static void bind(trochia_stretch *stretch, trochia_sizes size, double velocity, 
 
 static void load_line(const double *direction, const trochia_limits *limits, trochia_stretch *stretch) {
     for (uint32_t i = 0; i < limits->rows; i++) {
-        trochia_sizes size = {fabs(dot_row(limits, i, direction)), 0.0, 0.0};
+        trochia_sizes size = {fabs(trochia_dot_row(limits, i, direction)), 0.0, 0.0};
         bind(stretch, size, limits->velocity[i], limits->acceleration[i], limits->jerk[i]);
     }
-    trochia_sizes size = {norm(direction, limits->linear), 0.0, 0.0};
+    trochia_sizes size = {trochia_norm(direction, limits->linear), 0.0, 0.0};
     bind(stretch, size, limits->path_velocity, limits->path_acceleration, limits->path_jerk);
 }
 
@@ -114,10 +99,10 @@ static double load_arc(const trochia_segment *segment, const double *c, double f
     const double *slope = c + 6 + n;
     for (uint32_t i = 0; i < limits->rows; i++) {
         double m0 = limits->matrix[i * n + segment->first], m1 = limits->matrix[i * n + segment->second];
-        trochia_sizes size = arc_row(segment, c, n, m0, m1, dot_row(limits, i, slope), from, to);
+        trochia_sizes size = arc_row(segment, c, n, m0, m1, trochia_dot_row(limits, i, slope), from, to);
         bind(stretch, size, limits->velocity[i], limits->acceleration[i], limits->jerk[i]);
     }
-    double rise = norm(slope, limits->linear), r = fmax(c[2], c[2] + c[5] * segment->length);
+    double rise = trochia_norm(slope, limits->linear), r = fmax(c[2], c[2] + c[5] * segment->length);
     double w = fmax(fabs(c[4]), fabs(c[4] + 2.0 * c[6 + 2 * n] * segment->length)), rate = fabs(c[5]);
     double twist = fabs(2.0 * c[6 + 2 * n]), stretched = sqrt(r * w * r * w + rate * rate + rise * rise);
     trochia_sizes size = {stretched, r * (w * w + twist) + 2.0 * rate * w,
@@ -134,12 +119,14 @@ static double load_cubic(const trochia_segment *segment, const double *pool, con
     trochia_segment_at(segment, pool, n, length, 4, x[1]);
     for (uint32_t i = 0; i < limits->rows; i++) {
         trochia_sizes size =
-            cubic_row(dot_row(limits, i, x[0] + n), dot_row(limits, i, x[1] + n), dot_row(limits, i, x[0] + 2 * n),
-                      dot_row(limits, i, x[1] + 2 * n), dot_row(limits, i, x[0] + 3 * n), length);
+            cubic_row(trochia_dot_row(limits, i, x[0] + n), trochia_dot_row(limits, i, x[1] + n),
+                      trochia_dot_row(limits, i, x[0] + 2 * n), trochia_dot_row(limits, i, x[1] + 2 * n),
+                      trochia_dot_row(limits, i, x[0] + 3 * n), length);
         bind(stretch, size, limits->velocity[i], limits->acceleration[i], limits->jerk[i]);
     }
-    trochia_sizes size = cubic_row(norm(x[0] + n, linear), norm(x[1] + n, linear), norm(x[0] + 2 * n, linear),
-                                   norm(x[1] + 2 * n, linear), norm(x[0] + 3 * n, linear), length);
+    trochia_sizes size =
+        cubic_row(trochia_norm(x[0] + n, linear), trochia_norm(x[1] + n, linear), trochia_norm(x[0] + 2 * n, linear),
+                  trochia_norm(x[1] + 2 * n, linear), trochia_norm(x[0] + 3 * n, linear), length);
     bind(stretch, size, limits->path_velocity, limits->path_acceleration, limits->path_jerk);
     return size.along;
 }

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trochia.kernels.layout import PHASE, SEGMENT, dtype_of, ffi, lib, pointer
+from trochia.kernels.limits import limits_struct, rising_rests
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 PIECE = dtype_of("trochia_piece")
-_ROWS = 18
 _LEAST_ROOM = 4
 
 
@@ -52,24 +52,10 @@ class Planned:
         linear: int,
         rests: tuple[NDArray[np.uint64], NDArray[np.float64]],
     ) -> None:
-        rows, axes = matrix.shape
-        if rows > _ROWS or not np.array_equal(matrix[:axes], np.eye(axes)):
-            raise ValueError(f"limits need the unit matrix first and at most {_ROWS} rows")
-        if (
-            velocity.shape != (rows,)
-            or acceleration.shape != (rows,)
-            or not (np.minimum(velocity, acceleration) > 0).all()
-        ):
-            raise ValueError("every row needs a velocity and an acceleration above zero")
-        if rests[0].shape != rests[1].shape or (np.diff(rests[0].astype(np.int64)) < 0).any():
-            raise ValueError("rests need a rising segment and a time each")
+        axes = matrix.shape[1]
         self._segments, self._pool, self._axes = segments, pool, axes
-        self._rests = (rests[0].astype(np.uint64), rests[1].astype(np.float64))
-        self._limits = ffi.new("trochia_limits *")
-        self._limits.axes, self._limits.rows, self._limits.linear = axes, rows, linear
-        self._limits.matrix = list(matrix.ravel()) + [0.0] * (162 - matrix.size)
-        self._limits.velocity = list(velocity) + [1.0] * (_ROWS - rows)
-        self._limits.acceleration = list(acceleration) + [1.0] * (_ROWS - rows)
+        self._rests = rising_rests(rests)
+        self._limits = limits_struct(matrix, linear, velocity=velocity, acceleration=acceleration)
         self._limits.path_velocity, self._limits.path_acceleration = caps
         if segments.dtype != SEGMENT:
             raise ValueError("a path is SEGMENT rows")

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trochia.kernels.layout import PHASE, SEGMENT, dtype_of, ffi, lib, pointer
+from trochia.kernels.limits import limits_struct, rising_rests
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
 
 KNOT = dtype_of("trochia_knot")
 STRETCH = dtype_of("trochia_stretch")
-_ROWS = 18
 _BLOCK = 65536
 
 
@@ -54,33 +54,21 @@ class Ramps:
         linear: int,
         rests: tuple[NDArray[np.uint64], NDArray[np.float64]],
     ) -> None:
-        rows, axes = matrix.shape
-        if rows > _ROWS or not np.array_equal(matrix[:axes], np.eye(axes)):
-            raise ValueError(f"limits need the unit matrix first and at most {_ROWS} rows")
-        if not np.isfinite(jerk[:axes]).all():
+        if not np.isfinite(jerk[: matrix.shape[1]]).all():
             raise ValueError("every axis needs a jerk limit")
         if segments.dtype != SEGMENT or not len(segments):
             raise ValueError("a path is SEGMENT rows, at least one")
         self._segments, self._pool = segments, pool
-        self._limits = ffi.new("trochia_limits *")
-        self._limits.axes, self._limits.rows, self._limits.linear = axes, rows, linear
-        self._limits.matrix = list(matrix.ravel()) + [0.0] * (162 - matrix.size)
-        for name, values in (("velocity", velocity), ("acceleration", acceleration), ("jerk", jerk)):
-            if values.shape != (rows,) or not (values > 0).all():
-                raise ValueError(f"every row needs a {name} above zero")
-            setattr(self._limits, name, list(values) + [1.0] * (_ROWS - rows))
+        self._limits = limits_struct(matrix, linear, velocity=velocity, acceleration=acceleration, jerk=jerk)
         self._limits.path_velocity, self._limits.path_acceleration, self._limits.path_jerk = caps
-        self._plan(np.ascontiguousarray(rests[0]), np.ascontiguousarray(rests[1]))
+        self._plan(*rising_rests(rests))
 
     def _plan(self, where: NDArray[np.uint64], seconds: NDArray[np.float64]) -> None:
-        if where.shape != seconds.shape or (np.diff(where.astype(np.int64)) < 0).any():
-            raise ValueError("rests need a rising segment and a time each")
         count = len(self._segments)
         stretches = np.empty(lib.trochia_scurve_count(*self._path(), self._limits.axes, count), dtype=STRETCH)
         rows = pointer(stretches, "trochia_stretch *")
         lib.trochia_scurve_load(*self._path(), count, self._limits, rows)
         self.knots = np.empty(7 * len(stretches) + len(where) + 1, dtype=KNOT)
-        where = where.astype(np.uint64)
         made = lib.trochia_scurve(
             rows, len(stretches), pointer(where, "uint64_t *"), pointer(seconds, "double *"), len(where), self._knot()
         )
