@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from trochia.errors import ParseError
+from trochia.errors import ParseError, ProgramError
 from trochia.languages.gcode import DIALECTS, Reading, problems, read
 
 THREAD = "F1 S1 M3\nG76 Z-1 P1 I1 J0.1 K1 "
@@ -50,3 +50,10 @@ def test_a_dwell_of_another_dialect_that_is_no_number():
 def test_a_dwell_of_another_dialect_is_written_without_exponent():
     program = read("G4 P0.0001\nM2\n", reading=Reading(dialect=DIALECTS["marlin"]))
     assert program.actions[0].seconds == pytest.approx(1e-7)
+
+
+def test_a_spline_beyond_all_numbers():
+    with pytest.raises(ProgramError, match="not finite") as caught:
+        read("F3\nG5.1 Y[exp[700]] I1 J0\nM2\n")
+    assert caught.value.source is not None
+    assert caught.value.source.line == 2

@@ -15,7 +15,7 @@ import numpy as np
 from trochia.errors import ModalConflictError, Source
 from trochia.kernels.placement import new_placement, place
 from trochia.languages.gcode.frames import scaled
-from trochia.languages.gcode.special_moves import SpecialMoves
+from trochia.languages.gcode.special_moves import SpecialMoves, require_finite
 from trochia.languages.gcode.state import INCH
 from trochia.program import (
     Action,
@@ -156,6 +156,8 @@ class Builder(SpecialMoves):
             self._moves = grown
         made = self._moves[self._count :]
         made = made[: place(rows, placement, made)]
+        if not fills:  # numbers of the fast path are written out, and so not that great
+            require_finite(made, self._name)
         self._count += len(made)
 
     @property

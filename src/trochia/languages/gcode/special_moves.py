@@ -5,10 +5,11 @@ In: canonical calls.  Out: rows and actions of :class:`~trochia.languages.gcode.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from trochia.errors import ProgramError, Source
 from trochia.geometry.biarc import biarcs
 from trochia.geometry.nurbs import Nurbs
 from trochia.program import MoveKind, PathMode, Plane, Probe, SpindleLock, TimeLaw, Unfinished
@@ -16,12 +17,25 @@ from trochia.program import MoveKind, PathMode, Plane, Probe, SpindleLock, TimeL
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from numpy.typing import NDArray
+
     from trochia.kernels.placement import Placement
     from trochia.languages.gcode.sink import Position
     from trochia.program import Action
 
 SPLINE_TOLERANCE = 1e-3  #: mm by which the arcs of a spline may leave it
 _NO_CENTRE = (0.0, 0.0)
+
+
+def require_finite(moves: NDArray[Any], name: str) -> None:
+    """Raise a ProgramError where a move ends beyond what a number can hold."""
+    wrong = ~np.isfinite(moves["target"]).all(axis=1)
+    if wrong.any():
+        raise ProgramError(
+            "this move would end at a point that is not finite",
+            source=Source(name, int(moves["line"][wrong.argmax()])),
+            hint="Check the numbers it is made of.",
+        )
 
 
 class SpecialMoves:
