@@ -28,6 +28,11 @@ def test_a_wrong_line_does_not_make_the_next_arc_wrong():
     assert lines_of("F100\nG1 X10 Y0 Q3\nG2 X12 Y0 I1\nM2\n") == [2]
 
 
+@pytest.mark.parametrize("text", ["G0 @5\n@6\n@7\nM2\n", "@5 ^1\n@6\n^7\nM2\n", "G91 G0 @5 ^3\n@6\nM2\n"])
+def test_one_missing_angle_or_motion_code_is_not_reported_for_every_line(text):
+    assert lines_of(text) == [1]
+
+
 def test_a_missing_end_comes_after_the_others():
     assert lines_of("foo\nG0 X1\n") == [1, 2]
 

@@ -62,9 +62,11 @@ def pretend_done(block: Block | None, state: State) -> None:
     if state.absolute:
         for axis, value in block.axes.items():
             state.position[axis] = value
+    if block.is_polar:
+        state.position[0] = state.position[0] or 1.0  # the origin has no angle
     if "motion" in block.groups and block.motion is not None:
         state.motion = key_of(float(block.motion.name[1:]))
-    elif block.axes and state.motion == NO_MOTION:
+    elif block.has_target and state.motion == NO_MOTION:
         state.motion = 0
     for word in ("r", "depth", "initial"):  # a cycle that was refused may lack what its next line takes from it
         state.cycle_words.setdefault(word, state.position[state.plane.normal])
