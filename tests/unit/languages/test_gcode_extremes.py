@@ -28,6 +28,7 @@ def test_a_cycle_behind_one_that_was_refused(text: str):
         ("F1\nG73 X1 Z-1 R1 Q0.001 L9\nM2\n", "more than 10000 times"),
         (THREAD + "H99999999\nM2\n", "more than 10000 passes"),
         (THREAD + "R400\nM2\n", "more than 10000 passes"),
+        ("F1\nG3 X10 I5 P33333333333333333333\nM2\n", "more than 1,000,000 turns"),
     ],
 )
 def test_a_line_that_would_hardly_end(text: str, told: str):

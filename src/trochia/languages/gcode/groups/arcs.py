@@ -24,6 +24,7 @@ SHORT_RADIUS = (0.00127, 0.00005)  #: by which R may be too short, and the least
 SPIRAL = (0.02 * sqrt(2), 0.002 * sqrt(2))  #: by which start and end radius may differ anyway [mm], [inch]
 SPIRAL_MOST = (2.0 * sqrt(2), 0.2 * sqrt(2))  #: and by which they may never differ [mm], [inch]
 SPIRAL_SHARE = 0.001  #: else they may differ by this share of the greater one
+MOST_TURNS = 1_000_000  #: of one arc
 HALF_TURN = 1.0 - 1e-12  #: a chord of more than this share of the diameter counts as the diameter
 
 _OFFSETS = "ijk"  # offset words of X, Y, Z
@@ -58,6 +59,8 @@ def _arc(block: Block, state: State, sink: Sink, sense: int) -> None:
         centre = _centre_by_offsets(block, state, start_point)
         _check_radii(block, state, start_point, end_point, centre)
     turns = sense * round(block.values.get("p", 1.0))
+    if abs(turns) > MOST_TURNS:
+        raise block.fault(ParseError, f"an arc of more than {MOST_TURNS:,} turns", "p", hint="P counts whole turns.")
     if state.law == TimeLaw.INVERSE:
         climb = end[state.plane.normal] - state.position[state.plane.normal]
         set_inverse_time(block, sink, _length(start_point, end_point, centre, turns, climb))
