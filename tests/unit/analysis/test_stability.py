@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from trochia.analysis.pull_out import pull_out_torque
+from trochia.machine.motors.curves import pull_out_torque
 from trochia.analysis.stability import growth_rate, steady_angle
 from trochia.backends.stepper_twin import StepperTwin
 from trochia.errors import LimitError

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from trochia.analysis.pull_out import pull_out_torque, start_stop_speed
+from trochia.machine.motors.curves import pull_out_torque, start_stop_speed
 from trochia.backends.stepper_twin import StepperTwin
 from trochia.errors import ConfigError
 from trochia.machine.motors import HybridStepper, ShaftLoad, motor

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from trochia.analysis.pull_out import corner_speed, holding_torque, pull_out_torque, start_stop_speed
+from trochia.machine.motors.curves import corner_speed, holding_torque, pull_out_torque, start_stop_speed
 from trochia.errors import LimitError
 from trochia.machine.motors import HybridStepper, ShaftLoad, library, motor
 from trochia.pulses.excitation import EXCITATIONS, microstep
@@ -98,3 +98,18 @@ def test_a_load_that_cannot_start_is_refused():
     assert start_stop_speed(stepper, 0.98, load=ShaftLoad(constant=0.69)) > 0
     with pytest.raises(LimitError, match="does not take the first step"):
         start_stop_speed(stepper, 0.98, load=ShaftLoad(constant=0.70))
+
+
+@pytest.mark.parametrize("full_steps", [100, 900, 1500, 4000, 9000])
+def test_current_and_voltage_limits_together_are_the_best_point_of_both_discs(full_steps: float):
+    """Every current within I, every voltage it needs within V: the best of a fine grid is the closed form."""
+    stepper = MOTORS["QSH5718-55"]
+    omega, volts, amps = stepper.speed(full_steps), 24.0, 3.0
+    i_d, i_q = np.meshgrid(np.linspace(-amps, amps, 1501), np.linspace(-amps, amps, 1501))
+    x = stepper.teeth * omega * stepper.inductance
+    v_d = stepper.resistance * i_d - x * i_q
+    v_q = stepper.resistance * i_q + x * i_d + stepper.torque_constant * omega
+    allowed = (np.hypot(i_d, i_q) <= amps) & (np.hypot(v_d, v_q) <= volts)
+    best = stepper.torque_constant * float(i_q[allowed].max())
+    found = float(pull_out_torque(stepper, np.array(omega), volts, current=amps))
+    assert found == pytest.approx(best, abs=stepper.torque_constant * 0.01)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from trochia.machine.motors import HybridStepper, ShaftLoad
-    from trochia.pulses.excitation import Excitation
+    from trochia.machine.motors.excitation import Excitation
 
     Array = NDArray[np.float64]
 
@@ -47,17 +47,42 @@ def pull_out_torque(
     voltage
         Amplitude V of the fundamental at a phase [V]: the supply times ``Excitation.fundamental``.
     current
-        What a current controller holds a phase's amplitude to [A]; the torque is then K times it at most.
+        What a current controller holds a phase's amplitude to [A]: up to the corner speed the torque is K times it, above
+        it both bind (see :func:`_limited`).
     load
         Its frictions are taken off, with the motor's own; its constant torque is not.
     """
     speed = np.abs(np.asarray(omega, np.float64))
-    size = np.abs(motor.impedance(speed))
     k = motor.torque_constant
-    magnetic = k * voltage / size - k * k * speed * motor.resistance / size**2
+    across = (
+        voltage / np.abs(motor.impedance(speed)) - k * speed * motor.resistance / np.abs(motor.impedance(speed)) ** 2
+    )
     if current is not None:
-        magnetic = np.minimum(magnetic, k * current)
-    return magnetic - (motor.viscous + load.viscous) * speed - motor.friction - load.friction
+        across = _limited(motor, speed, voltage, current, across)
+    return k * across - (motor.viscous + load.viscous) * speed - motor.friction - load.friction
+
+
+def _limited(motor: HybridStepper, speed: Array, voltage: float, current: float, across: Array) -> Array:
+    """Return the greatest current across the magnet (i_q) within a current limit and a voltage limit (...) [A].
+
+    In the plane of (i_d, i_q) the current limit is a disc of radius I about zero, the voltage limit one of radius V/|Z|
+    about -K w (X, R)/|Z|².  The greatest i_q of both lies on top of either disc, where that lies in the other, or where
+    the two circles cross.  Discs that do not meet: no running at that speed, and ``across``, below zero then or not the
+    better of the two, is what is left.
+    """
+    z = motor.impedance(speed)
+    size = np.abs(z)
+    back = motor.torque_constant * speed / size**2
+    d, q, radius = -back * z.imag, -back * z.real, voltage / size
+    apart = np.hypot(d, q)
+    on_top = np.hypot(d, current - q) <= radius  # the current's own best point needs no more than the voltage
+    inside = np.hypot(d, across) <= current  # the voltage's own best point needs no more than the current
+    safe = np.where(apart > 0, apart, 1.0)
+    along = (current**2 - radius**2 + apart**2) / (2 * safe)
+    beside = np.sqrt(np.maximum(current**2 - along**2, 0.0))
+    crossing = along * q / safe + beside * np.abs(d) / safe
+    meet = np.abs(along) <= current
+    return np.where(on_top, current, np.where(inside | ~meet, np.minimum(across, current), crossing))
 
 
 def corner_speed(motor: HybridStepper, voltage: float, current: float | None = None) -> float:
