@@ -1,0 +1,1 @@
+"""The live machine: one object that owns every decision about motion."""
