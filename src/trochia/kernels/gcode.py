@@ -26,6 +26,7 @@ STOP_END, STOP_LINE, STOP_FULL = range(3)  #: why reading stopped: end of text, 
 _CAPACITY = 4096  # rows a batch: rows and their text stay in the second-level cache
 _ROWS_PER_LINE = 4
 _TEXT_PER_ROW = 512
+_unset = ffi.new_allocator(should_clear_after_alloc=False)  # C writes what is read; most programs need little of it
 
 
 class Modal(Protocol):
@@ -117,8 +118,8 @@ class PlainReader:
         if capacity < _ROWS_PER_LINE:
             raise ValueError(f"a batch must hold at least {_ROWS_PER_LINE} rows, not {capacity}")
         self._text = ffi.from_buffer("uint8_t[]", text)
-        self._rows = ffi.new("trochia_move[]", capacity)
-        self._out = ffi.new("uint8_t[]", capacity * _TEXT_PER_ROW)
+        self._rows = _unset("trochia_move[]", capacity)
+        self._out = _unset("uint8_t[]", capacity * _TEXT_PER_ROW)
         self.modal = cast("Modal", ffi.new("trochia_modal *"))
 
     def read(self) -> Rows:

@@ -228,8 +228,9 @@ class Expressions:
                 store.get(number)
             except VariableError as error:
                 raise self._relocated(error, at) from None
-        if number in store.computed:
-            return store.computed[number].read
+        computed = store.computed.get(number)
+        if computed is not None:
+            return computed.read
         values = store.numbered
         return lambda: values[number]
 

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from trochia.errors import ModalConflictError, ParseError, ProgramError
+from trochia.languages.gcode.computed import Computed
 from trochia.languages.gcode.owords import BARE, GLOBAL
-from trochia.languages.gcode.parameters import Computed
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -62,6 +62,8 @@ class Flow:
         The label of the loop or subroutine that was jumped to last.
     line
         Number of the line that runs, in its own text.
+    value, returned
+        What the last subroutine returned, and 1 where it returned something.
     ended
         M99 stood in the main program: it ends.
     """
@@ -84,7 +86,7 @@ class Flow:
         self._sub: str | None = None
         self._taken = False  # a branch of the innermost IF has been executed
         self._continuing = self._breaking = False
-        self._value, self._returned = 0.0, 0.0
+        self.value, self.returned = 0.0, 0.0
         self._acts: dict[str, Callable[[Control, str, Mark], None]] = {
             "sub": self._begin_sub, BARE: self._begin_sub, "endsub": self._return, "return": self._return,
             "m99": self._return, "call": self._call, "m98": self._call_program, "do": self._do,
@@ -92,12 +94,7 @@ class Flow:
             "if": self._if, "elseif": self._elseif, "else": self._else, "endif": self._endif,
             "break": self._break, "continue": self._continue,
         }  # fmt: skip
-        parameters.predefined |= {
-            "_value": Computed(lambda: self._value),
-            "_value_returned": Computed(lambda: self._returned),
-            "_line": Computed(lambda: float(self.line)),
-            "_call_level": Computed(lambda: float(len(self.calls))),
-        }
+        parameters.predefined.offer(_BY_NAME, self)
 
     def act(self, control: Control, mark: Mark) -> None:
         """Let a control line act; ``mark`` is where it stands, and the cursor behind it."""
@@ -194,7 +191,7 @@ class Flow:
         if (call.word == "m98") != (control.word == "m99"):
             right = "M99" if call.word == "m98" else "ENDSUB or RETURN"
             raise control.fault(ModalConflictError, f"what {call.word.upper()} called ends with {right}")
-        self._value, self._returned = (values[0], 1.0) if values else (0.0, 0.0)
+        self.value, self.returned = (values[0], 1.0) if values else (0.0, 0.0)
         self.skipping = None
         if call.left > 1:
             call.left -= 1
@@ -359,6 +356,14 @@ class Flow:
                                hint=self._texts.where(self.skipping))  # fmt: skip
         return since.fault(ModalConflictError, f"{since.word.upper()} has no end",
                            hint=f"Below it no line ends O{self.skipping.rpartition('#')[2]}.")  # fmt: skip
+
+
+_BY_NAME: dict[str, Callable[[Flow], Computed]] = {
+    "_value": lambda flow: Computed(lambda: flow.value),
+    "_value_returned": lambda flow: Computed(lambda: flow.returned),
+    "_line": lambda flow: Computed(lambda: float(flow.line)),
+    "_call_level": lambda flow: Computed(lambda: float(len(flow.calls))),
+}
 
 
 def _nothing() -> None:

@@ -12,22 +12,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from trochia.errors import VariableError
+from trochia.languages.gcode.computed import ComputedTable
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Iterable
 
 LAST = 5601  #: greatest number
 ARGUMENTS = 30  #: #1 to #30 belong to the subroutine that runs
 PERSISTENT = range(31, 5001)  #: a parameter file keeps those of them that it names
 READ_ONLY = frozenset((*range(5400, 5414), *range(5420, 5429)))
 TELLS_DEBUG = 5599  #: 0 silences (DEBUG, ...)
-
-
-class Computed(NamedTuple):
-    """A variable that is worked out when it is read; ``write`` is None where a program may not set it."""
-
-    read: Callable[[], float]
-    write: Callable[[float], None] | None = None
 
 
 class Frame(NamedTuple):
@@ -60,8 +54,8 @@ class Parameters:
         self.numbered[TELLS_DEBUG] = 1.0
         self.shared: dict[str, float] = {}
         self.local: dict[str, float] = {}
-        self.computed: dict[int, Computed] = {}
-        self.predefined: dict[str, Computed] = {}
+        self.computed = ComputedTable[int]()
+        self.predefined = ComputedTable[str]()
 
     # --- by number
 

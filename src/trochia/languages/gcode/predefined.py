@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from trochia.languages.gcode.computed import Computed
 from trochia.languages.gcode.frames import to_machine
-from trochia.languages.gcode.parameters import Computed
 from trochia.languages.gcode.state import NO_MOTION
 from trochia.program.modes import Plane, TimeLaw
 
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from trochia.languages.gcode.state import State
 
     Reading = Callable[["State"], float]
+    Maker = Callable[["State"], Computed]
 
 VERSION = (2.9, 0.0)  #: of the language: that of the reference
 _PLANES = {Plane.XY: 170.0, Plane.ZX: 180.0, Plane.YZ: 190.0}
@@ -78,30 +79,27 @@ NAMES: dict[str, tuple[str, Reading]] = {
 
 def define(parameters: Parameters, state: State) -> None:
     """Let the parameters answer from the state."""
-    for name, (_, reading) in NAMES.items():
-        parameters.predefined[name] = _of(state, reading)
-    for axis, letter in enumerate("xyzabcuvw"):
-        here = Computed(_coordinate(state, axis))
-        parameters.predefined[f"_{letter}"] = here
-        parameters.computed[_FIRST_POSITION + axis] = here
-    for axis, letter in enumerate("xyzabc"):
-        parameters.predefined[f"_abs_{letter}"] = Computed(_machine_coordinate(state, axis))
-    for number in _FAULTS:
-        parameters.computed[number] = Computed(lambda: 0.0, _ignore)
+    parameters.predefined.offer(_BY_NAME, state)
+    parameters.computed.offer(_BY_NUMBER, state)
 
 
-def _of(state: State, reading: Reading) -> Computed:
-    return Computed(lambda: reading(state))
+def _of(reading: Reading) -> Maker:
+    return lambda state: Computed(lambda: reading(state))
 
 
-def _coordinate(state: State, axis: int) -> Callable[[], float]:
-    return lambda: state.position[axis]
+def _coordinate(axis: int) -> Maker:
+    return lambda state: Computed(lambda: state.position[axis])
 
 
-def _machine_coordinate(state: State, axis: int) -> Callable[[], float]:
+def _machine_coordinate(axis: int) -> Maker:
     """Return how to read a machine coordinate, in program units."""
     linear = axis < 3
-    return lambda: to_machine(state, state.position)[axis] / (state.scale if linear else 1.0)
+    return lambda state: Computed(lambda: to_machine(state, state.position)[axis] / (state.scale if linear else 1.0))
+
+
+def _fault(state: State) -> Computed:
+    del state
+    return Computed(lambda: 0.0, _ignore)
 
 
 def _coordinate_code(system: int) -> float:
@@ -113,3 +111,14 @@ def _coordinate_code(system: int) -> float:
 def _ignore(value: float) -> None:
     """Do nothing: the interpreter sets it anew at once."""
     del value
+
+
+_BY_NAME: dict[str, Maker] = {
+    **{name: _of(reading) for name, (_, reading) in NAMES.items()},
+    **{f"_{letter}": _coordinate(axis) for axis, letter in enumerate("xyzabcuvw")},
+    **{f"_abs_{letter}": _machine_coordinate(axis) for axis, letter in enumerate("xyzabc")},
+}
+_BY_NUMBER: dict[int, Maker] = {
+    **{_FIRST_POSITION + axis: _coordinate(axis) for axis in range(9)},
+    **dict.fromkeys(_FAULTS, _fault),
+}

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from trochia.languages.gcode.parameters import Computed
+from trochia.languages.gcode.computed import Computed
 from trochia.program.modes import AXES
 from trochia.program.parameter_file import ACTIVE, FIRST_SYSTEM, G28, G30, ROTATION, SHIFT, SHIFT_ON, STEP
 from trochia.program.work import SYSTEMS
@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from trochia.languages.gcode.parameters import Parameters
     from trochia.languages.gcode.state import State
 
-    Point = Callable[[], list[float]]
+    Point = Callable[[State], list[float]]
+    Maker = Callable[[State], Computed]
 
 INPUT, TOOL, TOOL_OFFSET, DIAMETER, FRONT, BACK, ORIENTATION = 5399, 5400, 5401, 5410, 5411, 5412, 5413
 _ROTARY = frozenset("ABC")
@@ -28,17 +29,7 @@ _ROTARY = frozenset("ABC")
 
 def define(parameters: Parameters, state: State) -> None:
     """Let the parameters read and set the state."""
-    computed = parameters.computed
-    _point(computed, state, G28, lambda: state.homes[28])
-    _point(computed, state, G30, lambda: state.homes[30])
-    _point(computed, state, SHIFT, lambda: state.stored_shift)
-    computed[SHIFT_ON] = Computed(lambda: float(state.shift_on), _shift_writer(state))
-    computed[ACTIVE] = Computed(lambda: float(state.system))
-    for system in range(len(SYSTEMS)):
-        first = FIRST_SYSTEM + STEP * system
-        _point(computed, state, first, _origin(state, system))
-        computed[first + ROTATION] = _rotation(state, system)
-    _tool(computed, state)
+    parameters.computed.offer(_BY_NUMBER, state)
 
 
 def define_settings(parameters: Parameters, ini: Mapping[tuple[str, str], str]) -> None:
@@ -55,55 +46,80 @@ def _constant(value: float) -> Computed:
     return Computed(lambda: value)
 
 
-def _shift_writer(state: State) -> Callable[[float], None]:
+def _shift_on(state: State) -> Computed:
     def write(value: float) -> None:
         state.shift_on = value != 0
 
-    return write
+    return Computed(lambda: float(state.shift_on), write)
 
 
-def _input_writer(state: State) -> Callable[[float], None]:
+def _input(state: State) -> Computed:
     def write(value: float) -> None:
         state.input_value = value
 
-    return write
+    return Computed(lambda: state.input_value, write)
 
 
-def _origin(state: State, system: int) -> Point:
-    return lambda: state.systems[system]
+def _rotation(system: int) -> Maker:
+    def make(state: State) -> Computed:
+        def write(value: float) -> None:
+            state.rotations[system] = value
+
+        return Computed(lambda: state.rotations[system], write)
+
+    return make
 
 
-def _rotation(state: State, system: int) -> Computed:
-    def write(value: float) -> None:
-        state.rotations[system] = value
+def _axis(point: Point, axis: int) -> Maker:
+    """Return how to make one variable of a point that the state keeps in mm and degree."""
 
-    return Computed(lambda: state.rotations[system], write)
+    def make(state: State) -> Computed:
+        unit = _unit(state, axis)
 
+        def write(value: float) -> None:
+            point(state)[axis] = value * unit
 
-def _point(computed: dict[int, Computed], state: State, first: int, point: Point) -> None:
-    """Define the nine variables of a point that the state keeps in mm and degree."""
-    for axis, letter in enumerate(AXES):
-        computed[first + axis] = _axis(point, axis, 1.0 if letter in _ROTARY else state.unit)
+        return Computed(lambda: point(state)[axis] / unit, write)
 
-
-def _axis(point: Point, axis: int, unit: float) -> Computed:
-    def write(value: float) -> None:
-        point()[axis] = value * unit
-
-    return Computed(lambda: point()[axis] / unit, write)
+    return make
 
 
-def _tool(computed: dict[int, Computed], state: State) -> None:
-    """Define what is known of the tool in the spindle, and what M66 read."""
-    computed[INPUT] = Computed(lambda: state.input_value, _input_writer(state))
-    computed[TOOL] = Computed(lambda: float(state.loaded))
-    for axis, letter in enumerate(AXES):
-        computed[TOOL_OFFSET + axis] = _tool_axis(state, axis, 1.0 if letter in _ROTARY else state.unit)
-    computed[DIAMETER] = Computed(lambda: state.in_spindle.diameter / state.unit)
-    computed[FRONT] = Computed(lambda: state.in_spindle.front)
-    computed[BACK] = Computed(lambda: state.in_spindle.back)
-    computed[ORIENTATION] = Computed(lambda: float(state.in_spindle.orientation))
+def _tool_axis(axis: int) -> Maker:
+    def make(state: State) -> Computed:
+        unit = _unit(state, axis)
+        return Computed(lambda: state.in_spindle.offset[axis] / unit)
+
+    return make
 
 
-def _tool_axis(state: State, axis: int, unit: float) -> Computed:
-    return Computed(lambda: state.in_spindle.offset[axis] / unit)
+def _unit(state: State, axis: int) -> float:
+    return 1.0 if AXES[axis] in _ROTARY else state.unit
+
+
+def _points() -> dict[int, Maker]:
+    """Return the makers of all stored points, nine variables each, and of the turns of the coordinate systems."""
+    points: dict[int, Point] = {
+        G28: lambda state: state.homes[28], G30: lambda state: state.homes[30], SHIFT: lambda state: state.stored_shift,
+        **{FIRST_SYSTEM + STEP * system: _origin(system) for system in range(len(SYSTEMS))},
+    }  # fmt: skip
+    axes = {first + axis: _axis(point, axis) for first, point in points.items() for axis in range(len(AXES))}
+    turns = {FIRST_SYSTEM + STEP * system + ROTATION: _rotation(system) for system in range(len(SYSTEMS))}
+    return axes | turns
+
+
+def _origin(system: int) -> Point:
+    return lambda state: state.systems[system]
+
+
+_BY_NUMBER: dict[int, Maker] = {
+    **_points(),
+    SHIFT_ON: _shift_on,
+    ACTIVE: lambda state: Computed(lambda: float(state.system)),
+    INPUT: _input,
+    TOOL: lambda state: Computed(lambda: float(state.loaded)),
+    **{TOOL_OFFSET + axis: _tool_axis(axis) for axis in range(len(AXES))},
+    DIAMETER: lambda state: Computed(lambda: state.in_spindle.diameter / state.unit),
+    FRONT: lambda state: Computed(lambda: state.in_spindle.front),
+    BACK: lambda state: Computed(lambda: state.in_spindle.back),
+    ORIENTATION: lambda state: Computed(lambda: float(state.in_spindle.orientation)),
+}
