@@ -10,39 +10,56 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from trochia.kernels.gcode import OTHER_MOTION, STOP_FULL, PlainReader
+from trochia.languages.gcode.compensated_rows import compensate
 from trochia.languages.gcode.groups.arcs import SHORT_RADIUS, SPIRAL, SPIRAL_MOST, SPIRAL_SHARE
 from trochia.program.modes import AXES, TimeLaw
 
 if TYPE_CHECKING:
-    from mmap import mmap
-
     from trochia.languages.gcode.sink import Sink
     from trochia.languages.gcode.state import State
+    from trochia.languages.gcode.texts import Text
 
 _PLAIN_MOTIONS = {0: 0, 10: 1, 20: 2, 30: 3}  # code in tenths -> what the reader calls it
 
 
 class FastPath:
-    """Takes the plain lines of one text; ``axes`` are the letters that are axis words, in lower case."""
+    """Takes the plain lines of one text.
 
-    __slots__ = ("_reader",)
+    Parameters
+    ----------
+    text
+        The text.
+    axes
+        Letters that are axis words, in lower case.
+    compensated
+        Take lines under cutter compensation too.  An error there ends the run: who wants to go on after it does not
+        want this.
+    """
 
-    def __init__(self, text: bytes | mmap, axes: str) -> None:
-        self._reader = PlainReader(text)
+    __slots__ = ("_compensated", "_reader", "_text")
+
+    def __init__(self, text: Text, axes: str, *, compensated: bool) -> None:
+        self._text = text
+        self._compensated = compensated
+        self._reader = PlainReader(text.data)
         self._reader.modal.axes = sum(1 << AXES.index(letter) for letter in axes.upper())
 
     def advance(self, state: State, sink: Sink, offset: int, line: int) -> tuple[int, int]:
         """Take plain lines from byte ``offset`` on, where line number ``line`` begins; return both as they are now."""
         if state.law is not TimeLaw.PER_SECOND or state.diameter:
             return offset, line
-        if state.compensation is not None or state.straight_next:
+        stage = state.compensation
+        if state.straight_next or (stage is not None and not self._compensated):
             return offset, line
         modal = self._reader.modal
         modal.offset, modal.line = offset, line
         self._load(state)
         while True:
+            begin = modal.offset, modal.line
             rows = self._reader.read()
-            if len(rows):
+            if stage is not None:
+                compensate(rows, stage, state.plane, self._text, offset=begin[0], line=begin[1])
+            elif len(rows):
                 sink.moves(rows)
             if modal.stop != STOP_FULL:
                 break

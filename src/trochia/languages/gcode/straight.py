@@ -11,6 +11,7 @@ from trochia.errors import ParseError
 from trochia.languages.gcode.block import AXIS, Block
 from trochia.languages.gcode.check import check
 from trochia.languages.gcode.functions import Refusal
+from trochia.languages.gcode.groups.compensation import run_compensated
 from trochia.languages.gcode.registry import G_CODES
 
 if TYPE_CHECKING:
@@ -42,7 +43,7 @@ class Straight:
             As the whole way would.
         """
         code = self._code or G_CODES.get(state.motion)
-        if state.compensation is not None or code is None or code.name not in ("G0", "G1"):
+        if code is None or code.name not in ("G0", "G1"):
             return False
         block = self._block
         at = 0
@@ -52,7 +53,10 @@ class Straight:
         except Refusal as refusal:
             raise block.place.fault(ParseError, refusal.message, at, hint=refusal.hint) from None
         check(block, state)
-        code.run(block, state, sink)
+        if state.compensation is None:
+            code.run(block, state, sink)
+        else:
+            run_compensated(code, block, state, sink)
         return True
 
 

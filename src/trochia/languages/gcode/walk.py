@@ -69,7 +69,7 @@ class Walk:
         self._on_error = on_error
         self._reported: set[tuple[str, int]] = set()
         self._shown = 1  # line of the main program
-        self._fast = {text.name: FastPath(text.data, axes)} if fast else None
+        self._fast: dict[str, FastPath] | None = {} if fast else None
         self._wait = self._patience = 0  # after k tries in vain the fast path is next tried k lines later
         self._flow = Flow(state.parameters, self._cursor, texts)
         self._flow.on_call = self._enter
@@ -108,7 +108,7 @@ class Walk:
             return False
         fast = readers.get(text.name)
         if fast is None:
-            fast = readers[text.name] = FastPath(text.data, self._axes)
+            fast = readers[text.name] = FastPath(text, self._axes, compensated=self._on_error is None)
         cursor.offset, cursor.line = fast.advance(self._state, self._sink, offset, line)
         taken = cursor.line - line
         self._patience = 0 if taken else min(self._patience + 1, _MOST_PATIENCE)
@@ -213,10 +213,10 @@ class Walk:
         state = self._state
         if template.set_only(state.parameters):
             return
-        if template.straight is not None and template.straight.run(state, self._sink):
-            return
         if state.compensation is not None:
             state.compensation.line = self._shown
+        if template.straight is not None and template.straight.run(state, self._sink):
+            return
         block: Block | None = None
         try:
             block = sort_words(template.fill(state.parameters), self._axes)
