@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 
 from trochia.errors import ConfigError
+from trochia.machine.acceleration import AccelerationCurve, CurveOfAcceleration
 from trochia.machine.codecs import Quantity, Text
 from trochia.machine.schema import Bound, check_bounds, key
 
@@ -33,7 +34,10 @@ _JERK = Quantity("jerk", motion=True)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Axis:
-    """One axis: travel [mm or degree], greatest velocity, acceleration and (if the machine gives one) jerk."""
+    """One axis: travel [mm or degree], greatest velocity, acceleration and (if the machine gives one) jerk.
+
+    Where acceleration falls with speed, the profile torque follows ``acceleration_curve``; the others keep its least.
+    """
 
     name: str
     kind: AxisKind = field(
@@ -47,6 +51,10 @@ class Axis:
     acceleration: float = field(metadata=key(_ACCELERATION, "greatest acceleration", Bound.POSITIVE))
     jerk: float | None = field(
         default=None, metadata=key(_JERK, "greatest jerk; none: acceleration may jump", Bound.POSITIVE)
+    )
+    acceleration_curve: AccelerationCurve | None = field(
+        default=None,
+        metadata=key(CurveOfAcceleration(), "greatest acceleration by speed, falling; the profile torque follows it"),
     )
 
     def __post_init__(self) -> None:

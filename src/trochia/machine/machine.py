@@ -31,6 +31,8 @@ class Machine:
         Greatest distance between programmed and commanded path where G64 gives no P [mm].
     servo_period
         Period of set-points and recordings [s].
+    segment_time
+        Least time the drive takes for a segment of the path [s]; shorter ones are slowed; 0 where it takes any.
     tool_change_time
         What a tool change costs [s].
     tools, parameters
@@ -60,6 +62,10 @@ class Machine:
     )
     servo_period: float = field(
         default=0.001, metadata=key(Quantity("time"), "period of set-points and recordings", Bound.POSITIVE)
+    )
+    segment_time: float = field(
+        default=0.0,
+        metadata=key(Quantity("time"), "least time of a path segment that the drive takes", Bound.NOT_NEGATIVE),
     )
     tool_change_time: float = field(
         default=0.0, metadata=key(Quantity("time"), "what a tool change costs", Bound.NOT_NEGATIVE)

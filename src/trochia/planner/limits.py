@@ -7,14 +7,19 @@ kinematic matrix.  Joints that move alike share a row, with the least of their l
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from trochia.machine.acceleration import AccelerationCurve
+
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import NDArray
 
+    from trochia.machine.axes import Axis
     from trochia.machine.machine import Machine
 
 
@@ -34,6 +39,10 @@ class Limits:
         Caps on the vector X Y Z; infinite where nothing is given.
     linear
         Number of leading axes that are X, Y or Z.
+    curves
+        Of rows whose acceleration falls with speed, by row; ``acceleration`` then holds the least of it.
+    segment_time
+        Least time of a segment [s]; 0 where there is none.
     """
 
     names: tuple[str, ...]
@@ -45,15 +54,24 @@ class Limits:
     path_acceleration: float
     path_jerk: float
     linear: int
+    curves: Mapping[int, AccelerationCurve] = field(default_factory=dict[int, AccelerationCurve])
+    segment_time: float = 0.0
+
+    def acceleration_at(self, speed: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the greatest acceleration of each row at its |speed| (n, rows)."""
+        bounds = np.broadcast_to(self.acceleration, speed.shape).copy()
+        for row, curve in self.curves.items():
+            bounds[:, row] = curve.at(speed[:, row])
+        return bounds
 
     @classmethod
     def of(cls, machine: Machine) -> Limits:
         """Return the limits of a machine."""
-        rows = {_key(row): _Row(f"axis {a.name}", a.velocity, a.acceleration, _or_inf(a.jerk))
-                for row, a in zip(np.eye(len(machine.axes)), machine.axes, strict=True)}  # fmt: skip
+        rows = {_key(row): _of_axis(a) for row, a in zip(np.eye(len(machine.axes)), machine.axes, strict=True)}
         for joint, row in zip(machine.joints, machine.kinematics.matrix, strict=True):
-            own = _Row(f"joint {joint.name}", *map(_or_inf, (joint.velocity, joint.acceleration, joint.jerk)))
-            if own[1:] != (math.inf, math.inf, math.inf):
+            given = _or_inf(joint.velocity), _or_inf(joint.acceleration), _or_inf(joint.jerk)
+            own = _Row(f"joint {joint.name}", *given)
+            if own[1:4] != (math.inf, math.inf, math.inf):
                 rows[_key(row)] = own.tighten(rows.get(_key(row)))
         return cls(
             names=tuple(row.name for row in rows.values()),
@@ -65,6 +83,8 @@ class Limits:
             path_acceleration=_or_inf(machine.path.acceleration),
             path_jerk=_or_inf(machine.path.jerk),
             linear=sum(axis.name in "XYZ" for axis in machine.axes),
+            curves={i: row.curve for i, row in enumerate(rows.values()) if row.curve is not None},
+            segment_time=machine.segment_time,
         )
 
 
@@ -75,13 +95,27 @@ class _Row(NamedTuple):
     velocity: float
     acceleration: float
     jerk: float
+    curve: AccelerationCurve | None = None
 
     def tighten(self, other: _Row | None) -> _Row:
         """Return the least of both under the name of the first that is below the other."""
         if other is None:
             return self
-        binds = any(mine < theirs for mine, theirs in zip(self[1:], other[1:], strict=True))
-        return _Row(self.name if binds else other.name, *map(min, self[1:], other[1:]))
+        binds = any(mine < theirs for mine, theirs in zip(self[1:4], other[1:4], strict=True))
+        least = (min(self.velocity, other.velocity), min(self.acceleration, other.acceleration),
+                 min(self.jerk, other.jerk))  # fmt: skip
+        curve = None if other.curve is None else other.curve.capped(self.acceleration)
+        return _Row(self.name if binds else other.name, *least, curve)
+
+
+def _of_axis(axis: Axis) -> _Row:
+    """Return an axis' limits; under a curve its speed ends with the curve, and a constant acceleration is its least."""
+    name, curve = f"axis {axis.name}", axis.acceleration_curve
+    if curve is None:
+        return _Row(name, axis.velocity, axis.acceleration, _or_inf(axis.jerk))
+    curve = curve.capped(axis.acceleration)
+    velocity = min(axis.velocity, curve.top)
+    return _Row(name, velocity, float(curve.at(velocity)), _or_inf(axis.jerk), curve)
 
 
 def _key(row: NDArray[np.float64]) -> tuple[float, ...]:

@@ -31,6 +31,11 @@ class Schedule(Protocol):
         """Whether acceleration is continuous; where not, jerk has no peak to speak of."""
         ...
 
+    @property
+    def by_curves(self) -> bool:
+        """Whether acceleration follows the limits' curves by speed; where not, it keeps the least of each."""
+        ...
+
     def phases(self, size: int) -> Iterator[NDArray[np.void]]:
         """Yield all phases in order, without a gap, in blocks of at most ``size`` (PHASE,)."""
         ...

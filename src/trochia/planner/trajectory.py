@@ -9,6 +9,7 @@ import numpy as np
 
 from trochia.kernels import path as kernel
 from trochia.kernels.layout import PHASE
+from trochia.planner.binding import Binding, bind
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -96,6 +97,16 @@ class Trajectory:
         """Return ds/dt at each time (times,) [mm/s; degree/s where only rotary axes move]."""
         return self.states(times)["v"]
 
+    def binding(self, times: ArrayLike) -> Binding:
+        """Return which limit binds at each time (times,): its kind, its axis or joint, and how much of it is used."""
+        return self.binding_of(self.states(times))
+
+    def binding_of(self, states: NDArray[Any]) -> Binding:
+        """Return which limit binds in each state (PHASE rows)."""
+        if self.schedule is None:
+            return Binding.of_rest(len(states), self.limits.names)
+        return bind(self.path, self.limits, states, jerk=self.schedule.jerk_limited, curves=self.schedule.by_curves)
+
     def line_at(self, times: ArrayLike) -> NDArray[np.uint32]:
         """Return the source line whose move is under way at each time (times,); 0 where nothing ever moves."""
         if self.schedule is None:
@@ -134,7 +145,14 @@ class Trajectory:
 
     @property
     def slowed(self) -> NDArray[np.intp]:
-        """Rows of the program's moves whose feed a velocity limit keeps from being reached, rising."""
+        """Rows of the program's moves whose feed a limit on velocity keeps from being reached, rising.
+
+        The drive's least time of a segment is such a limit too.
+        """
         if self.schedule is None:
             return np.zeros(0, dtype=np.intp)
-        return np.unique(self.path.segments["move"][self.schedule.over_limit()]).astype(np.intp)
+        segments, over = self.path.segments, self.schedule.over_limit()
+        if self.limits.segment_time > 0.0:
+            feed = segments["speed_limit"]
+            over = over | (np.isfinite(feed) & (segments["length"] < feed * self.limits.segment_time))
+        return np.unique(segments["move"][over]).astype(np.intp)

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from trochia.machine.acceleration import CurveOfAcceleration
 from trochia.machine.axes import Axis, PathLimits
 from trochia.machine.codecs import Exact, Flag, Number, Quantity, Ratio, Text, Whole
 from trochia.machine.io import CHANNELS, ELECTRICAL, Beam, Channel, Spindle
@@ -24,7 +25,8 @@ TABLES = {
 } | {f"motor, kind {kind}": cls for kind, cls in MOTORS.items()} | {
     f"transmission, kind {kind}": cls for kind, cls in TRANSMISSIONS.items()
 }  # fmt: skip
-PLAIN = {Ratio: "exact number", Whole: "whole number", Number: "number", Flag: "true or false", Text: "text"}
+PLAIN = {Ratio: "exact number", Whole: "whole number", Number: "number", Flag: "true or false", Text: "text",
+         CurveOfAcceleration: "pairs of velocity and acceleration"}  # fmt: skip
 
 
 def value(entry: Key) -> str:
