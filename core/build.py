@@ -16,6 +16,7 @@ ROOT = CORE.parent
 # A struct is declared before it is used: shared first, then by the data's way through the house.
 HEADERS = [
     "host/move.h",
+    "host/spline.h",
     "host/path.h",
     "host/plan.h",
     "host/scurve.h",

@@ -12,7 +12,8 @@ enum { TROCHIA_AXES = 9 }; /* X Y Z A B C U V W, in this order everywhere */
 enum trochia_move_kind {
     TROCHIA_RAPID = 0, /* straight, as fast as the axes go */
     TROCHIA_FEED = 1,  /* straight, at the feed */
-    TROCHIA_ARC = 2    /* arc or helix at the feed, about centre[] in plane, turns signed + = counter-clockwise */
+    TROCHIA_ARC = 2,   /* arc or helix at the feed, about centre[] in plane, turns signed + = counter-clockwise */
+    TROCHIA_SPLINE = 3 /* cubic Bezier curve of X Y Z at the feed, row turns of the program's splines */
 };
 
 enum trochia_plane { TROCHIA_XY = 0, TROCHIA_YZ = 1, TROCHIA_ZX = 2 }; /* first and second axis in this order */
@@ -36,8 +37,9 @@ typedef struct {
     double rate;         /* feed, by law; 0 for a rapid */
     double tolerance[2]; /* G64 P and Q */
     float power;         /* S of the spindle or beam that is on (1 where no S was given); 0 off */
-    int32_t turns;       /* arc: signed count of turns begun, as ARC_FEED prints it: 1 = up to one whole turn */
-    uint32_t line;       /* source line, from 1 */
+    int32_t turns; /* arc: signed count of turns begun, as ARC_FEED prints it: 1 = up to one whole turn; spline: its
+                      row of control points */
+    uint32_t line; /* source line, from 1 */
     uint8_t kind, plane, law, path_mode;
 } trochia_move;
 

@@ -16,6 +16,7 @@
 #include <stdint.h>
 
 #include "host/move.h"
+#include "host/spline.h"
 
 enum trochia_segment_kind { TROCHIA_LINE = 0, TROCHIA_ARC_SEGMENT = 1, TROCHIA_CUBIC = 2 };
 
@@ -57,22 +58,26 @@ void trochia_path_extents(const trochia_segment *segments, const double *pool, u
 /* What the moves of a program are read with. */
 typedef struct {
     const trochia_move *moves;
-    const uint8_t *rests; /* per move: 1 = motion is at rest before it */
-    const double *rpm;    /* per move: spindle speed, read for feeds per revolution only */
-    uint64_t count;       /* moves */
-    double start[9];      /* position before the first move */
-    double tolerance;     /* of the machine, for G64 without P; blends are left out where tolerance < 0 */
-    uint32_t axes;        /* columns of the path */
-    uint32_t columns[9];  /* which of the nine letters each is */
-    uint32_t continuity;  /* 1: x' is continuous between stops; 2: x'' too */
-    uint32_t paced;       /* 1: the three below are given */
-    double slowness[9];   /* 1 / velocity limit of each column, 1 / acceleration limit, 1 / jerk limit (0: none) */
+    const uint8_t *rests;               /* per move: 1 = motion is at rest before it */
+    const double *rpm;                  /* per move: spindle speed, read for feeds per revolution only */
+    uint64_t count;                     /* moves */
+    double start[9];                    /* position before the first move */
+    double tolerance;                   /* of the machine, for G64 without P; blends are left out where tolerance < 0 */
+    uint32_t axes;                      /* columns of the path */
+    uint32_t columns[9];                /* which of the nine letters each is */
+    uint32_t continuity;                /* 1: x' is continuous between stops; 2: x'' too */
+    uint32_t paced;                     /* 1: the three below are given */
+    const trochia_spline_piece *pieces; /* of the program's splines, none farther from its curve than spline_error */
+    const uint64_t *first_piece;        /* per spline and once more; NULL where there are no splines */
+    uint64_t spline_count;
+    double spline_error; /* mm */
+    double slowness[9];  /* 1 / velocity limit of each column, 1 / acceleration limit, 1 / jerk limit (0: none) */
     double effort[9];
     double shake[9];
 } trochia_path_input;
 
-/* What is made of them; room for 3 segments and (7 + 10 axes) coefficients a move is the caller's; for continuous
- * curvature for 6 segments and (7 + 22 axes) coefficients. */
+/* What is made of them; room for 3 segments and (7 + 10 axes) coefficients a move and a piece of a spline is the
+ * caller's; for continuous curvature for 6 segments and (7 + 22 axes) coefficients. */
 typedef struct {
     trochia_segment *segments;
     double *pool;
@@ -81,7 +86,8 @@ typedef struct {
     uint64_t failed_move;  /* row of the move that has no speed (see the result) */
 } trochia_path_output;
 
-/* Returns 0, or 1 when a feed has no rate, or 2 when a feed per revolution finds the spindle at rest. */
+/* Returns 0, or 1 when a feed has no rate, 2 when a feed per revolution finds the spindle at rest, 3 when a spline is
+ * not there or does not begin where the move before ended or end at its target. */
 int32_t trochia_path_build(const trochia_path_input *input, trochia_path_output *output);
 
 #endif

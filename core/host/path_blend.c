@@ -109,6 +109,8 @@ static void want_at_arc(const trochia_curve *a, const trochia_curve *b, double j
 trochia_joint trochia_joint_wanted(const trochia_frame *frame, const trochia_curve *a, const trochia_curve *b) {
     trochia_joint joint = {0.0, 0.0, 0};
     double jump[9] = {0.0};
+    if (b->inner)
+        return joint;
     if (a->settle || b->halt) {
         joint.stop = 1;
         return joint;

@@ -43,6 +43,8 @@ static void classify_arc(const trochia_frame *frame, const trochia_curve *a, con
 void trochia_turn_classify(const trochia_frame *frame, const trochia_curve *a, const trochia_curve *b,
                            trochia_turn *turn) {
     memset(turn, 0, sizeof *turn);
+    if (b->inner)
+        return;
     if (a->settle || b->halt) {
         turn->kind = TROCHIA_TURN_STOP;
         return;

@@ -15,13 +15,7 @@ static void emit_blend(trochia_reader *r, const trochia_curve *a, const trochia_
     }
     double rest[36];
     const double *c = blend->c;
-    for (uint32_t i = 0; i < n; i++) {
-        double c1 = c[n + i], c2 = c[2 * n + i], c3 = c[3 * n + i], u = before;
-        rest[i] = c[i] + u * (c1 + u * (c2 + u * c3));
-        rest[n + i] = c1 + u * (2.0 * c2 + u * 3.0 * c3);
-        rest[2 * n + i] = c2 + 3.0 * c3 * u;
-        rest[3 * n + i] = c3;
-    }
+    trochia_shift_cubic(n, c, before, rest);
     trochia_emit_cubic(r, c, before, a->speed, a->move);
     trochia_emit_cubic(r, rest, blend->length - before, b->speed, b->move);
 }
@@ -58,7 +52,7 @@ int32_t trochia_path_build(const trochia_path_input *input, trochia_path_output 
     double cut = 0.0; /* taken of a at its start */
 
     trochia_start_reader(&reader);
-    for (uint64_t row = 0; row < input->count; row++) {
+    for (uint64_t row = 0; row < input->count; row = trochia_next_row(&reader, row)) {
         int32_t wrong = trochia_read_curve(&reader, row, c);
         if (wrong) {
             output->failed_move = row;

@@ -17,13 +17,14 @@ typedef struct {
 typedef struct {
     double length, speed, tolerance;   /* tolerance <= 0: no blend at either end */
     double x0[9], x1[9], t0[9], t1[9]; /* ends, and x' there */
-    double arc[7];                     /* centre[2] radius angle angle_rate radius_rate angle_curve */
+    double c[36];                      /* arc: centre[2] radius angle angle_rate radius_rate angle_curve; cubic: c0.. */
     double kappa;                      /* greatest |x''|, 0 for a line */
     uint32_t move;
     uint8_t kind, first, second;
     uint8_t halt;   /* at rest before it */
     uint8_t settle; /* at rest after it (G61.1) */
     uint8_t rested; /* found to be at rest where it begins */
+    uint8_t inner;  /* follows from the curve before without a joint: a later piece of the same spline */
 } trochia_curve;
 
 /* Part of a curve with rest at its other end that a joint may take: the rest of it brakes or speeds up by its own
@@ -46,12 +47,19 @@ typedef struct {
     trochia_frame frame;
     double position[9];
     uint8_t halt;
+    uint64_t piece, piece_end; /* pieces of the spline being read that are still to come */
+    double way, way_left;      /* of all of it, and of these */
 } trochia_reader;
 
 void trochia_start_reader(trochia_reader *r);
 
-/* Reads the move of a row; length 0 where it does not move.  Returns 0, or what is wrong (1 no feed, 2 spindle at
- * rest). */
+/* Returns the row to read after `row`: the same while pieces of its spline are to come. */
+static inline uint64_t trochia_next_row(const trochia_reader *r, uint64_t row) {
+    return r->piece < r->piece_end ? row : row + 1;
+}
+
+/* Reads the move of a row, of a spline the next piece; length 0 where it does not move.  Returns 0, or what is wrong (1
+ * no feed, 2 spindle at rest, 3 no such spline). */
 int32_t trochia_read_curve(trochia_reader *r, uint64_t row, trochia_curve *curve);
 
 /* Makes the line from the reader's position to `target`; length 0 where that is no way. */
@@ -64,6 +72,9 @@ trochia_segment *trochia_append(trochia_reader *r, double length, double speed, 
 
 /* Appends `length` of a curve from `cut` on; nothing at all where both blends meet. */
 void trochia_emit_curve(trochia_reader *r, const trochia_curve *curve, double cut, double length);
+
+/* The same cubic about s = u. */
+void trochia_shift_cubic(uint32_t n, const double *c, double u, double *out);
 
 void trochia_emit_cubic(trochia_reader *r, const double *c, double length, double speed, uint32_t move);
 

@@ -86,8 +86,9 @@ static uint64_t extend(trochia_reader *r, uint64_t row, double q, run *run, troc
 int32_t trochia_read_merged(trochia_reader *r, uint64_t *row, trochia_curve *curve) {
     run run = {.count = 0};
     memcpy(run.base, r->position, sizeof run.base);
-    uint64_t first = (*row)++, merged = r->out->merged_count;
+    uint64_t first = *row, merged = r->out->merged_count;
     int32_t wrong = trochia_read_curve(r, first, curve);
+    *row = trochia_next_row(r, first);
     double q = blend_within(r->in, &r->in->moves[first]);
     if (wrong || !(curve->length > 0.0 && q > 0.0))
         return wrong;

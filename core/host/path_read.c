@@ -1,4 +1,4 @@
-/* A program's moves as curves, one at a time, and curves as segments. */
+/* A program's moves as curves, one at a time. */
 #include <math.h>
 #include <string.h>
 
@@ -6,28 +6,6 @@
 
 static const double NOTHING = 1e-9; /* mm or degree: shorter moves do not move */
 static const double TURN = 6.28318530717958647693;
-
-void trochia_curve_at(const trochia_curve *curve, uint32_t n, double s, uint32_t orders, double *out) {
-    if (curve->kind == TROCHIA_LINE) {
-        for (uint32_t i = 0; i < n; i++) {
-            out[i] = s < 0.5 * curve->length ? curve->x0[i] + curve->t0[i] * s
-                                             : curve->x1[i] - curve->t0[i] * (curve->length - s);
-            if (orders > 1)
-                out[n + i] = curve->t0[i];
-        }
-        return;
-    }
-    double pool[7 + 18];
-    trochia_segment segment = {.kind = TROCHIA_ARC_SEGMENT, .first = curve->first, .second = curve->second};
-    memcpy(pool, curve->arc, 6 * sizeof *pool);
-    for (uint32_t i = 0; i < n; i++) {
-        int in_plane = i == curve->first || i == curve->second;
-        pool[6 + i] = in_plane ? 0.0 : curve->x0[i];
-        pool[6 + n + i] = in_plane ? 0.0 : curve->t0[i];
-    }
-    pool[6 + 2 * n] = curve->arc[6];
-    trochia_segment_at(&segment, pool, n, s, orders, out);
-}
 
 static double distance(const double *step, uint32_t from, uint32_t to) {
     double square = 0.0;
@@ -109,7 +87,7 @@ static void read_arc(const trochia_reader *r, const trochia_move *move, const do
     double q = copysign(fabs(flat) / length, sweep);
     double arc[7] = {
         move->centre[0], move->centre[1], r0, angle, q / r0, radial / length, 0.5 * q * (1.0 / r1 - 1.0 / r0) / length};
-    memcpy(curve->arc, arc, sizeof arc);
+    memcpy(curve->c, arc, sizeof arc);
     curve->length = length;
     double rate = fabs(q) / fmin(r0, r1), twist = fabs(2.0 * arc[6]);
     curve->kappa = fmax(r0, r1) * (rate * rate + twist) + 2.0 * fabs(arc[5]) * rate;
@@ -125,8 +103,84 @@ static void read_arc(const trochia_reader *r, const trochia_move *move, const do
     memcpy(curve->t0, x + n, n * sizeof *x);
 }
 
-/* Returns 0, or what is wrong (1 no feed, 2 spindle at rest). */
-static int32_t set_speed(const trochia_reader *r, const trochia_move *move, uint64_t row, trochia_curve *curve) {
+static int is_near(double a, double b) {
+    static const double NEAR = 1e-6; /* mm */
+    return fabs(a - b) <= NEAR;
+}
+
+/* Looks up the pieces of a spline; returns 3 where it is not there or does not join up. */
+static int32_t find_spline(trochia_reader *r, const trochia_move *move, const double *target) {
+    const trochia_path_input *in = r->in;
+    if (move->turns < 0 || (uint64_t)move->turns >= in->spline_count)
+        return 3;
+    r->piece = in->first_piece[move->turns];
+    r->piece_end = in->first_piece[move->turns + 1];
+    for (uint32_t i = 0; i < r->frame.n && r->piece < r->piece_end && in->columns[i] < 3; i++) {
+        const trochia_spline_piece *first = &in->pieces[r->piece], *last = &in->pieces[r->piece_end - 1];
+        const double *c = last->c + in->columns[i], s = last->length;
+        if (!is_near(first->c[in->columns[i]], r->position[i]) ||
+            !is_near(c[0] + s * (c[3] + s * (c[6] + s * c[9])), target[i]))
+            return 3;
+    }
+    r->way = 0.0;
+    for (uint64_t k = r->piece; k < r->piece_end; k++)
+        r->way += in->pieces[k].length;
+    r->way_left = r->way;
+    return 0;
+}
+
+/* The next piece of a spline; other axes than X Y Z go evenly to their target. */
+static void read_piece(trochia_reader *r, double *target, trochia_curve *curve) {
+    const trochia_spline_piece *piece = &r->in->pieces[r->piece];
+    uint32_t n = r->frame.n;
+    double s = piece->length, share = s / r->way_left, k0[9], k1[9];
+    int last = r->piece + 1 == r->piece_end;
+    for (uint32_t i = 0; i < n; i++) {
+        double *c = curve->c;
+        if (r->in->columns[i] < 3) {
+            for (uint32_t power = 0; power < 4; power++)
+                c[power * n + i] = piece->c[3 * power + r->in->columns[i]];
+            if (!last)
+                target[i] = c[i] + s * (c[n + i] + s * (c[2 * n + i] + s * c[3 * n + i]));
+        } else {
+            if (!last)
+                target[i] = r->position[i] + (target[i] - r->position[i]) * share;
+            c[i] = r->position[i];
+            c[n + i] = (target[i] - c[i]) / s;
+            c[2 * n + i] = c[3 * n + i] = 0.0;
+        }
+        curve->x0[i] = c[i];
+        curve->x1[i] = target[i];
+        curve->t0[i] = c[n + i];
+        curve->t1[i] = c[n + i] + s * (2.0 * c[2 * n + i] + s * 3.0 * c[3 * n + i]);
+        k0[i] = 2.0 * c[2 * n + i];
+        k1[i] = k0[i] + 6.0 * s * c[3 * n + i];
+    }
+    curve->kind = TROCHIA_CUBIC;
+    curve->length = s;
+    curve->kappa = fmax(trochia_group_norm(&r->frame, k0), trochia_group_norm(&r->frame, k1));
+    r->way_left -= s;
+    r->piece++;
+}
+
+/* Returns 0, or what is wrong; `target` becomes the end of the piece. */
+static int32_t read_spline(trochia_reader *r, const trochia_move *move, double *target, trochia_curve *curve) {
+    curve->inner = r->piece < r->piece_end;
+    if (!curve->inner) {
+        int32_t wrong = find_spline(r, move, target);
+        if (wrong)
+            return wrong;
+    }
+    if (r->piece < r->piece_end)
+        read_piece(r, target, curve);
+    else
+        trochia_read_line(r, target, curve);
+    return 0;
+}
+
+/* Returns 0, or what is wrong (1 no feed, 2 spindle at rest); `whole` is the length of all of the move. */
+static int32_t set_speed(const trochia_reader *r, const trochia_move *move, uint64_t row, double whole,
+                         trochia_curve *curve) {
     if (move->kind == TROCHIA_RAPID) {
         curve->speed = INFINITY;
         return 0;
@@ -135,7 +189,7 @@ static int32_t set_speed(const trochia_reader *r, const trochia_move *move, uint
         return 1;
     curve->speed = move->rate;
     if (move->law == TROCHIA_INVERSE)
-        curve->speed *= curve->length;
+        curve->speed *= whole;
     if (move->law == TROCHIA_PER_REV)
         curve->speed *= r->in->rpm[row] / 60.0;
     return curve->speed > 0.0 ? 0 : 2;
@@ -148,12 +202,16 @@ int32_t trochia_read_curve(trochia_reader *r, uint64_t row, trochia_curve *curve
         target[i] = move->target[r->in->columns[i]];
     r->halt |= r->in->rests[row];
     curve->length = 0.0;
+    curve->inner = 0;
+    int32_t wrong = 0;
     if (move->kind == TROCHIA_ARC)
         read_arc(r, move, target, curve);
+    else if (move->kind == TROCHIA_SPLINE)
+        wrong = read_spline(r, move, target, curve);
     else
         trochia_read_line(r, target, curve);
-    if (curve->length == 0.0)
-        return 0;
+    if (wrong || curve->length == 0.0)
+        return wrong;
     curve->move = (uint32_t)row;
     curve->halt = r->halt;
     curve->settle = move->path_mode == TROCHIA_EXACT_STOP;
@@ -162,47 +220,11 @@ int32_t trochia_read_curve(trochia_reader *r, uint64_t row, trochia_curve *curve
                                                                 : 0.0;
     if (r->in->tolerance < 0.0)
         curve->tolerance = 0.0;
+    if (curve->kind == TROCHIA_CUBIC)
+        curve->tolerance -= r->in->spline_error;
     r->halt = 0;
     memcpy(r->position, target, sizeof target);
-    return set_speed(r, move, row, curve);
-}
-
-trochia_segment *trochia_append(trochia_reader *r, double length, double speed, uint32_t move, uint8_t kind) {
-    trochia_segment *segment = &r->out->segments[r->out->segment_count++];
-    *segment = (trochia_segment){
-        .length = length, .speed_limit = speed, .data = r->out->pool_count, .move = move, .kind = kind};
-    return segment;
-}
-
-/* What the joints have left of a curve; nothing at all where both blends meet. */
-void trochia_emit_curve(trochia_reader *r, const trochia_curve *curve, double cut, double length) {
-    uint32_t n = r->frame.n;
-    if (length <= 1e-12 * curve->length)
-        return;
-    trochia_segment *segment = trochia_append(r, length, curve->speed, curve->move, curve->kind);
-    double *c = r->out->pool + r->out->pool_count;
-    if (curve->kind == TROCHIA_LINE) {
-        for (uint32_t i = 0; i < n; i++) {
-            c[i] = curve->x0[i] + curve->t0[i] * cut;
-            c[n + i] = curve->t0[i];
-        }
-        r->out->pool_count += 2 * n;
-        return;
-    }
-    const double *arc = curve->arc;
-    segment->first = curve->first;
-    segment->second = curve->second;
-    memcpy(c, arc, 6 * sizeof *c);
-    c[2] += arc[5] * cut;
-    c[3] += cut * (arc[4] + arc[6] * cut);
-    c[4] += 2.0 * arc[6] * cut;
-    for (uint32_t i = 0; i < n; i++) {
-        int in_plane = i == curve->first || i == curve->second;
-        c[6 + i] = in_plane ? 0.0 : curve->x0[i] + curve->t0[i] * cut;
-        c[6 + n + i] = in_plane ? 0.0 : curve->t0[i];
-    }
-    c[6 + 2 * n] = arc[6];
-    r->out->pool_count += 7 + 2 * n;
+    return set_speed(r, move, row, curve->kind == TROCHIA_CUBIC ? r->way : curve->length, curve);
 }
 
 void trochia_start_reader(trochia_reader *r) {
@@ -217,6 +239,7 @@ void trochia_start_reader(trochia_reader *r) {
     }
     for (uint32_t i = 0; i < in->axes; i++)
         r->position[i] = in->start[in->columns[i]];
+    r->piece = r->piece_end = 0;
     r->out->segment_count = r->out->pool_count = r->out->failed_move = r->out->merged_count = 0;
 }
 
@@ -224,10 +247,4 @@ void trochia_start_reader(trochia_reader *r) {
  * is left.  The joint at the end then gets its wish or all that is left. */
 double trochia_share(double wish, double other, double length) {
     return fmin(wish, other < 0.5 * length ? length - other : 0.5 * length);
-}
-
-void trochia_emit_cubic(trochia_reader *r, const double *c, double length, double speed, uint32_t move) {
-    trochia_append(r, length, speed, move, TROCHIA_CUBIC);
-    memcpy(r->out->pool + r->out->pool_count, c, 4 * r->frame.n * sizeof *c);
-    r->out->pool_count += 4 * r->frame.n;
 }

@@ -33,13 +33,7 @@ static void emit_bridge(trochia_reader *r, const trochia_curve *a, const trochia
     double k = bridge.length, u = 0.5 * k;
     double *c = bridge.c[1], rest[36];
     trochia_emit_cubic(r, bridge.c[0], k, a->speed, a->move);
-    for (uint32_t i = 0; i < n; i++) {
-        double c1 = c[n + i], c2 = c[2 * n + i], c3 = c[3 * n + i];
-        rest[i] = c[i] + u * (c1 + u * (c2 + u * c3));
-        rest[n + i] = c1 + u * (2.0 * c2 + u * 3.0 * c3);
-        rest[2 * n + i] = c2 + 3.0 * c3 * u;
-        rest[3 * n + i] = c3;
-    }
+    trochia_shift_cubic(n, c, u, rest);
     if (a->speed == b->speed)
         trochia_emit_cubic(r, c, k, b->speed, b->move);
     else {

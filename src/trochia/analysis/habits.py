@@ -73,8 +73,8 @@ def _changed(program: Program, columns: Sequence[int]) -> NDArray[np.bool_]:
 
 
 def _moving(program: Program) -> NDArray[np.bool_]:
-    """Return which moves go anywhere (moves,): a full circle does, though it ends where it began."""
-    return _changed(program, range(len(AXES))) | (program.moves["kind"] == MoveKind.ARC)
+    """Return which moves go anywhere (moves,): a full circle or a loop does, though it ends where it began."""
+    return _changed(program, range(len(AXES))) | (program.moves["kind"] >= MoveKind.ARC)
 
 
 def _below_lowest_cut(program: Program, moving: NDArray[np.bool_], rapid: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trochia.kernels.layout import MOVE, PHASE, SEGMENT, ffi, lib, pointer
+from trochia.kernels.spline import PIECE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 _COEFFICIENTS = {lib.TROCHIA_LINE: (0, 2), lib.TROCHIA_ARC_SEGMENT: (7, 2), lib.TROCHIA_CUBIC: (0, 4)}
 _ROOM = {1: (3, 10), 2: (6, 22)}  #: segments, and coefficients an axis, that a move may need
 _NINE = 9
-_FAULTS = {0: None, 1: "feed", 2: "spindle"}
+_FAULTS = {0: None, 1: "feed", 2: "spindle", 3: "spline"}
 
 
 def build(
@@ -32,6 +33,7 @@ def build(
     tolerance: float,
     continuity: int = 1,
     limits: NDArray[np.float64] | None = None,
+    splines: tuple[NDArray[np.void], NDArray[np.uint64], float] | None = None,
 ) -> tuple[NDArray[np.void], NDArray[np.float64], int, tuple[str, int] | None]:
     """Return the segments and coefficients of a program's moves, how many were merged, and what stopped the work.
 
@@ -54,12 +56,14 @@ def build(
     limits
         Velocity, acceleration and jerk of each column (3, axes), infinite where there is none: blends beside slow moves
         are then no longer than these need.
+    splines
+        What :func:`trochia.kernels.spline.fit` returns, and the tolerance it was given [mm].
 
     Returns
     -------
     tuple
-        Segments (k,), coefficients, number of moves that others stand for, and None or ("feed" | "spindle", row of the
-        move that has no speed).
+        Segments (k,), coefficients, number of moves that others stand for, and None or ("feed" | "spindle" | "spline",
+        row of the move that has no speed or no such spline).
     """
     if moves.dtype != MOVE or rests.shape != moves.shape or start.shape != (_NINE,):
         raise ValueError("a path is built from MOVE rows, as many rests, and a start of nine axes")
@@ -76,9 +80,17 @@ def build(
     if continuity not in _ROOM:
         raise ValueError(f"continuity is 1 or 2, not {continuity!r}")
     room, rows = _ROOM[continuity]
-    segments = np.empty(room * count, dtype=SEGMENT)
-    pool = np.empty((7 + rows * axes) * count)
     given = ffi.new("trochia_path_input *")
+    curves = count
+    if splines is not None:
+        pieces, first, given.spline_error = splines
+        if pieces.dtype != PIECE or first.dtype != np.uint64 or not first.size or first[-1] != len(pieces):
+            raise ValueError("splines are PIECE rows, and where each curve's begin")
+        given.spline_count, given.pieces = first.size - 1, pointer(pieces, "trochia_spline_piece *")
+        given.first_piece = pointer(first, "uint64_t *")
+        curves += _piece_count(moves, first)
+    segments = np.empty(room * curves, dtype=SEGMENT)
+    pool = np.empty((7 + rows * axes) * curves)
     made = ffi.new("trochia_path_output *")
     flags = np.ascontiguousarray(rests, dtype=np.uint8)
     given.moves, given.rests, given.rpm = (
@@ -98,6 +110,13 @@ def build(
     segments.resize(made.segment_count, refcheck=False)
     pool.resize(made.pool_count, refcheck=False)
     return segments, pool, int(made.merged_count), (fault, int(made.failed_move)) if fault else None
+
+
+def _piece_count(moves: NDArray[np.void], first: NDArray[np.uint64]) -> int:
+    """Return how many pieces the moves that are splines have together."""
+    rows = moves["turns"][moves["kind"] == lib.TROCHIA_SPLINE]
+    rows = rows[(rows >= 0) & (rows < first.size - 1)]
+    return int((first[rows + 1] - first[rows]).sum())
 
 
 def check(segments: NDArray[np.void], pool: NDArray[np.float64], axes: int) -> None:

@@ -16,6 +16,7 @@ class MoveKind(IntEnum):
     RAPID = 0
     FEED = 1
     ARC = 2
+    SPLINE = 3
 
 
 class Plane(IntEnum):

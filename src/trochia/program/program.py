@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,6 +11,10 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from trochia.program.actions import Action
+
+
+def _no_splines() -> NDArray[np.float64]:
+    return np.zeros((0, 4, 3))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,6 +33,14 @@ class Program:
         Structured array of :data:`trochia.program.MOVE`, read-only; zero-length moves are kept.
     actions
         In order; each stands before the move ``at``.
+    splines
+        Control points of cubic Bezier curves in X Y Z (k, 4, 3) [mm], read-only.  A move of kind SPLINE follows the one
+        whose row its ``turns`` names; it begins where the move before ended, and ends at its own target.
+
+    Raises
+    ------
+    ValueError
+        When ``splines`` has another shape.
     """
 
     name: str
@@ -36,10 +48,13 @@ class Program:
     start: NDArray[np.float64]
     moves: NDArray[Any]
     actions: tuple[Action, ...]
+    splines: NDArray[np.float64] = field(default_factory=_no_splines)
 
     def __post_init__(self) -> None:
-        self.start.setflags(write=False)
-        self.moves.setflags(write=False)
+        if self.splines.shape[1:] != (4, 3) or self.splines.dtype != np.float64:
+            raise ValueError("splines are control points (k, 4, 3) of doubles")
+        for array in (self.start, self.moves, self.splines):
+            array.setflags(write=False)
 
     def starts(self) -> NDArray[np.float64]:
         """Return where each move begins (moves, 9) [mm, degree]."""

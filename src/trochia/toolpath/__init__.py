@@ -5,13 +5,14 @@ it stays inside the travel.  No time, no limits.
 """
 
 from trochia.kernels.layout import SEGMENT
-from trochia.toolpath.build import build
+from trochia.toolpath.build import SPLINE_ERROR, build
 from trochia.toolpath.measure import Measure, measure, measure_program
 from trochia.toolpath.toolpath import SegmentKind, Toolpath
 from trochia.toolpath.travel import Outside, first_outside, fitting_shift
 
 __all__ = [
     "SEGMENT",
+    "SPLINE_ERROR",
     "Measure",
     "Outside",
     "SegmentKind",

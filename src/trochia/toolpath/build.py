@@ -8,6 +8,7 @@ import numpy as np
 
 from trochia.errors import LimitError, PlanningError, Source
 from trochia.kernels import path as kernel
+from trochia.kernels import spline
 from trochia.program import AXES, MoveKind, Plane, Spindle, TimeLaw
 from trochia.toolpath.toolpath import Toolpath
 
@@ -16,6 +17,9 @@ if TYPE_CHECKING:
 
     from trochia.machine.machine import Machine
     from trochia.program import Program
+
+
+SPLINE_ERROR = 1e-4  #: mm: how far a spline's cubics by length may lie from the curve
 
 
 def build(program: Program, machine: Machine, *, blend: bool = True, continuity: int = 1) -> Toolpath:
@@ -45,11 +49,19 @@ def build(program: Program, machine: Machine, *, blend: bool = True, continuity:
     segments, pool, merged, fault = kernel.build(
         program.moves, _rests(program, machine), _spindle_speeds(program), start=program.start, columns=columns,
         tolerance=machine.path_tolerance if blend else -1.0, continuity=continuity, limits=_limits(machine),
+        splines=_splines(program),
     )  # fmt: skip
+    if fault and fault[0] == "spline":
+        raise ValueError(f"move {fault[1]} follows a spline that is not there or does not lead to its target")
     if fault:
         raise _no_speed(program, *fault)
     letters = "".join(axis.name for axis in machine.axes)
     return Toolpath(axes=letters, start=program.start[list(columns)], segments=segments, pool=pool, merged=merged)
+
+
+def _splines(program: Program) -> tuple[NDArray[np.void], NDArray[np.uint64], float] | None:
+    """Return the program's splines as pieces by length, and their error; None where it has none."""
+    return (*spline.fit(program.splines, SPLINE_ERROR), SPLINE_ERROR) if len(program.splines) else None
 
 
 def _limits(machine: Machine) -> NDArray[np.float64]:
@@ -90,6 +102,11 @@ def _refuse_missing_axes(program: Program, machine: Machine) -> None:
         lacking = [missing.index(column) for column in plane.axes if column in missing]
         flat = arcs[moves["plane"][arcs] == plane]
         moved[flat[:, None], lacking] = True
+    curves = np.flatnonzero(moves["kind"] == MoveKind.SPLINE)
+    for column in range(3):
+        if column in missing and curves.size:
+            bent = np.ptp(program.splines[moves["turns"][curves], :, column], axis=1) > 0.0
+            moved[curves[bent], missing.index(column)] = True
     rows = np.flatnonzero(moved.any(axis=1))
     if rows.size:
         row = int(rows[0])

@@ -50,13 +50,15 @@ class Measure:
 
 
 def measure(programmed: Toolpath) -> Measure:
-    """Return the size of a path built with ``blend=False`` (then each segment is one move, and exact)."""
+    """Return the size of a path built with ``blend=False`` (then no segment is of two moves, and all are exact)."""
     feed = programmed.is_feed
     linear = _moves_linear_axes(programmed)
-    length = programmed.segments["length"]
+    length, move = programmed.segments["length"], programmed.segments["move"]
+    begins = np.ones(len(programmed), dtype=np.bool_)
+    begins[1:] = move[1:] != move[:-1]
     return Measure(
-        moves=len(programmed),
-        feed_moves=int(feed.sum()),
+        moves=int(begins.sum()),
+        feed_moves=int((feed & begins).sum()),
         feed_length=float(length[feed & linear].sum()),
         rapid_length=float(length[~feed & linear].sum()),
         extents=programmed.extents(),
