@@ -1,17 +1,18 @@
 """Will it run?  In: a plan.  Out: its problems, errors first, each at its line.
 
 Language is judged before there is a plan (:func:`trochia.languages.gcode.problems`); here it is what the machine says:
-travel, feeds it cannot reach, and legal mistakes.
+travel, torque, feeds it cannot reach, and legal mistakes.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from trochia.analysis.habits import warnings
 from trochia.analysis.margins import margins
 from trochia.analysis.problems import Problem, Severity, from_error, more_lines
+from trochia.analysis.torque import LOST, TorqueUse, lost_step_problems, torque_use
 from trochia.analysis.travel import travel_error
 
 if TYPE_CHECKING:
@@ -28,16 +29,25 @@ class Verdict:
     ----------
     more
         How many errors there are beyond those in ``problems``.
+    torque
+        What the motors have to give, by joint; of joints that name motor and driver.
     """
 
     problems: tuple[Problem, ...]
     plan: Plan | None = None
     more: int = 0
+    torque: dict[str, TorqueUse] = field(default_factory=dict[str, TorqueUse])
 
     @property
     def ok(self) -> bool:
         """Whether nothing stops it; warnings do not."""
         return not any(problem.severity is Severity.ERROR for problem in self.problems)
+
+    @property
+    def movable(self) -> bool:
+        """Whether the twin can run it: there is a plan, and at worst motors that would lose steps."""
+        errors = {problem.code for problem in self.problems if problem.severity is Severity.ERROR}
+        return self.plan is not None and errors <= {LOST}
 
     @property
     def time_s(self) -> float | None:
@@ -51,17 +61,18 @@ class Verdict:
             "time_s": self.time_s,
             "problems": [problem.figures() for problem in self.problems],
             "more_errors": self.more,
-            "margins": {} if self.plan is None else margins(self.plan),
+            "margins": {} if self.plan is None else margins(self.plan, self.torque),
         }
 
 
 def judge(plan: Plan) -> Verdict:
     """Return the verdict on a plan."""
-    problems = [*warnings(plan.program, plan.machine), *_slowed(plan)]
+    uses = torque_use(plan)
+    problems = [*lost_step_problems(plan, uses), *warnings(plan.program, plan.machine), *_slowed(plan)]
     outside = travel_error(plan)
     if outside is not None:
         problems.insert(0, from_error(outside, plan.program.name))
-    return Verdict(problems=tuple(problems), plan=plan)
+    return Verdict(problems=tuple(problems), plan=plan, torque=uses)
 
 
 def _slowed(plan: Plan) -> list[Problem]:

@@ -1,7 +1,7 @@
 """How much of each joint's limits a plan leaves unused.
 
 In: a plan.  Out: for each joint the unused part of its speed and step rate, as fractions (0.25: a quarter is left;
-below zero: over the limit).  Torque is None until the joint's motor has a torque curve.
+below zero: over the limit).  Torque is None where the machine's file does not name motor and driver.
 """
 
 from __future__ import annotations
@@ -11,13 +11,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from trochia.analysis.plan import Plan
+    from trochia.analysis.torque import TorqueUse
 
 Margins = dict[str, float | None]
+LEAST = -99.0  #: margin where there is no torque at all: no finite number would be true
 
 
-def margins(plan: Plan) -> dict[str, Margins]:
-    """Return {joint: {"torque", "speed", "step_rate"}}; None where the machine gives no limit."""
+def margins(plan: Plan, torque: Mapping[str, TorqueUse]) -> dict[str, Margins]:
+    """Return {joint: {"torque", "speed", "step_rate"}}; None where the machine gives no limit.
+
+    ``torque`` is what :func:`trochia.analysis.torque.torque_use` found.
+    """
     machine, peaks = plan.machine, plan.trajectory.peaks
     axis_peaks = np.array([peaks[axis.name]["velocity"] or 0.0 for axis in machine.axes])
     axis_limits = np.array([axis.velocity for axis in machine.axes])
@@ -28,7 +35,7 @@ def margins(plan: Plan) -> dict[str, Margins]:
         limit = min(joint.velocity or np.inf, float(row @ axis_limits))
         rate = None if joint.steps_per_unit is None else speed * abs(float(joint.steps_per_unit))
         result[joint.name] = {
-            "torque": None,
+            "torque": max(1.0 - torque[joint.name].used, LEAST) if joint.name in torque else None,
             "speed": 1.0 - speed / limit,
             "step_rate": None if rate is None or joint.pulse_rate is None else 1.0 - rate / joint.pulse_rate,
         }

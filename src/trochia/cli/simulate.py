@@ -52,7 +52,7 @@ def command(
     from trochia.cli.progress import Progress  # noqa: PLC0415
 
     job = judge(program, machine_name, place, profile, reading=reading)
-    if job.verdict.plan is None or not job.verdict.ok:
+    if job.verdict.plan is None or not job.verdict.movable:
         if as_json:
             options.print_json(job.verdict.figures())
         else:
@@ -62,7 +62,7 @@ def command(
         proof = prove(job.verdict, job.text, output, period=period, progress=progress)
     if as_json:
         options.print_json(proof.figures())
-        return
+        sys.exit(0 if job.verdict.ok else 1)
     show_plan(job.verdict.plan)
     contour = proof.contour_error
     click.echo(f"contour error at most {contour.peak * 1000:.2f} µm, rms {contour.rms * 1000:.2f} µm")
@@ -74,3 +74,4 @@ def command(
     if every > servo and period is None:
         click.echo(f'recorded every {every:g} ms, for it is long; --rate "{servo:g} ms" records every servo period')
     click.echo(f"report   {proof.files['report']}")
+    sys.exit(0 if job.verdict.ok else 1)

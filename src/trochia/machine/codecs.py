@@ -23,6 +23,8 @@ _ANGULAR = {
     "velocity": "angular velocity",
     "acceleration": "angular acceleration",
     "jerk": "angular jerk",
+    "force": "torque",
+    "mass": "inertia",
 }
 #: other units than the base one that a quantity may be written in, where that is shorter and reads back the same
 _PREFERRED = {"time": ("s", "ms", "us", "ns"), "frequency": ("Hz", "kHz", "MHz"), "current": ("A", "mA")}

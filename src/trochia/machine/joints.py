@@ -8,13 +8,21 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, ClassVar
 
+from trochia.errors import ConfigError
 from trochia.machine.codecs import Flag, Quantity, Ratio, Text, Whole
+from trochia.machine.drivers import DRIVERS, Driver, fed
+from trochia.machine.loads import JointLoad
+from trochia.machine.motors.catalogue import CatalogueStepper
+from trochia.machine.motors.library import motor as library_motor
+from trochia.machine.motors.wiring import WIRINGS, wired
 from trochia.machine.schema import Bound, Record, Variant, check_bounds, key
 from trochia.machine.transmissions import TRANSMISSIONS
 
 if TYPE_CHECKING:
     from fractions import Fraction
 
+    from trochia.machine.drivers import Fed
+    from trochia.machine.motors.hybrid import HybridStepper
     from trochia.machine.transmissions import Transmission
 
 _MODEL = key(Text(), "maker's name for it, for people")
@@ -31,9 +39,31 @@ class Stepper:
         default=1, metadata=key(Whole(), "pulses a full step, as set at the driver", Bound.POSITIVE)
     )
     model: str | None = field(default=None, metadata=_MODEL)
+    library: str | None = field(default=None, metadata=key(Text(), "a motor of Trochia's library: gives it a torque"))
+    catalogue: CatalogueStepper | None = field(
+        default=None, metadata=key(Record(CatalogueStepper), "a motor written out here, in place of one of the library")
+    )
+    wiring: str | None = field(
+        default=None, metadata=key(Text(WIRINGS), "of half windings, where the catalogue's row is for one half")
+    )
 
     def __post_init__(self) -> None:
         check_bounds(self)
+        parameters = self.parameters
+        if parameters is not None and parameters.full_steps != self.full_steps:
+            raise ConfigError(f"must be {parameters.full_steps}, those of the motor, not {self.full_steps}",
+                              key="full_steps")  # fmt: skip
+
+    @property
+    def parameters(self) -> HybridStepper | None:
+        """What the equations need of the motor, or None where the file does not say which it is."""
+        if self.library is not None and self.catalogue is not None:
+            raise ConfigError("give the motor by library or by catalogue, not by both", key="library")
+        try:
+            row = self.catalogue if self.library is None else library_motor(self.library)
+        except ConfigError as error:
+            raise ConfigError(error.plain, key="library", hint=error.hint) from None
+        return None if row is None else wired(row.parameters(), self.wiring)
 
     @property
     def steps_per_turn(self) -> int:
@@ -125,9 +155,35 @@ class Joint:
     pulses: PulseTiming = field(
         default=PulseTiming(), metadata=key(Record(PulseTiming), "what the driver's inputs ask for")
     )
+    driver: Driver | None = field(
+        default=None, metadata=key(Variant(DRIVERS), "what feeds the motor's phases; without it a stepper is ideal")
+    )
+    load: JointLoad = field(
+        default=JointLoad(), metadata=key(Record(JointLoad), "what the motor has to move, for its torque")
+    )
 
     def __post_init__(self) -> None:
         check_bounds(self, path=f"joints.{self.name}")
+        try:
+            _ = self.fed
+        except ConfigError as error:
+            raise ConfigError(error.plain, key=f"joints.{self.name}.{error.key}", hint=error.hint) from None
+
+    @property
+    def fed(self) -> Fed | None:
+        """The motor behind its driver, or None where the file does not give both.
+
+        Raises
+        ------
+        ConfigError
+            For a driver without a known motor, and as :func:`trochia.machine.drivers.fed`.
+        """
+        if self.driver is None:
+            return None
+        parameters = self.motor.parameters if isinstance(self.motor, Stepper) else None
+        if not isinstance(self.motor, Stepper) or parameters is None:
+            raise ConfigError("needs a stepper whose library or catalogue says what it is", key="driver")
+        return fed(parameters, self.driver, self.motor.microsteps)
 
     @property
     def steps_per_unit(self) -> Fraction | None:

@@ -11,10 +11,13 @@ import pytest
 from trochia.machine.acceleration import CurveOfAcceleration
 from trochia.machine.axes import Axis, PathLimits
 from trochia.machine.codecs import Exact, Flag, Number, Quantity, Ratio, Text, Whole
+from trochia.machine.drivers import DRIVERS
 from trochia.machine.io import CHANNELS, ELECTRICAL, Beam, Channel, Spindle
 from trochia.machine.joints import MOTORS, Encoder, Joint, PulseTiming
 from trochia.machine.kinematics import KINEMATICS
+from trochia.machine.loads import JointLoad
 from trochia.machine.machine import Machine
+from trochia.machine.motors import CatalogueStepper
 from trochia.machine.schema import Bound, Key, Record, Variant, keys_of
 from trochia.machine.transmissions import TRANSMISSIONS
 
@@ -22,8 +25,11 @@ PAGE = Path(__file__).parents[3] / "docs" / "reference" / "machine-file.md"
 TABLES = {
     "Top of the file": Machine, "path": PathLimits, "axes.X": Axis, "joints.X": Joint, "encoder": Encoder,
     "pulses": PulseTiming, "spindle": Spindle, "beam": Beam, "io.NAME": Channel,
+    "catalogue": CatalogueStepper, "load": JointLoad,
 } | {f"motor, kind {kind}": cls for kind, cls in MOTORS.items()} | {
     f"transmission, kind {kind}": cls for kind, cls in TRANSMISSIONS.items()
+} | {
+    f"driver, kind {kind}": cls for kind, cls in DRIVERS.items()
 }  # fmt: skip
 PLAIN = {Ratio: "exact number", Whole: "whole number", Number: "number", Flag: "true or false", Text: "text",
          CurveOfAcceleration: "pairs of velocity and acceleration"}  # fmt: skip

@@ -47,8 +47,8 @@ def pull_out_torque(
     voltage
         Amplitude V of the fundamental at a phase [V]: the supply times ``Excitation.fundamental``.
     current
-        What a current controller holds a phase's amplitude to [A]: up to the corner speed the torque is K times it, above
-        it both bind (see :func:`_limited`).
+        What a current controller holds a phase's amplitude to [A]: up to the corner speed the torque is K times it,
+        above it both bind (see :func:`_limited`).
     load
         Its frictions are taken off, with the motor's own; its constant torque is not.
     """

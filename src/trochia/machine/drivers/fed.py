@@ -1,0 +1,214 @@
+"""A motor behind its driver: what the equations and the closed forms need, put together.
+
+In: a motor, a driver, microsteps.  Out: :class:`Fed`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, ClassVar, Protocol
+
+import numpy as np
+
+from trochia.errors import ConfigError
+from trochia.machine.drivers.chopper import Chopper
+from trochia.machine.motors.curves import corner_speed, holding_torque, pull_out_torque
+from trochia.machine.motors.excitation import excitation
+from trochia.machine.motors.hybrid import FREE
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from trochia.machine.motors.excitation import Excitation
+    from trochia.machine.motors.hybrid import HybridStepper
+    from trochia.machine.motors.shaft import ShaftLoad
+
+_BY_MICROSTEPS = {1: "two-phase", 2: "half-step"}
+MOST_SPEED = 1e4  #: no stepper turns as fast [rad/s]
+MOST_OVERLOAD = 1.0 + 1e-9  #: a current on its limit is within it
+
+
+class Driver(Protocol):
+    """What every driver says of a phase; see :class:`~trochia.machine.drivers.voltage.HBridge` for the meanings."""
+
+    kind: ClassVar[str]
+
+    @property
+    def supply(self) -> float:
+        """Of the motor [V]."""
+        ...
+
+    @property
+    def phase_voltage(self) -> float:
+        """Across a phase at level 1 [V]."""
+        ...
+
+    @property
+    def resistance(self) -> float:
+        """What it adds to a phase [ohm]."""
+        ...
+
+    @property
+    def current(self) -> float | None:
+        """What it holds the current of a phase to [A]; None: it does not."""
+        ...
+
+    @property
+    def excitation(self) -> str | None:
+        """Name of the excitation; None: by microsteps."""
+        ...
+
+    @property
+    def released(self) -> str:
+        """What becomes of the phases of a released motor: hold, short or open."""
+        ...
+
+    @property
+    def current_limit(self) -> float | None:
+        """Continuous, of a phase [A]."""
+        ...
+
+    @property
+    def power_limit(self) -> float | None:
+        """Heat it gets rid of [W]."""
+        ...
+
+    def loss(self, rms: float, mean: float) -> float:
+        """Return its heat for a phase [W]."""
+        ...
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Fed:
+    """A motor behind its driver.
+
+    Attributes
+    ----------
+    motor
+        Its parameters, with what the driver adds to the resistance of a phase.
+    excitation
+        How the phases are switched.
+    driver
+        What feeds them.
+    """
+
+    motor: HybridStepper
+    excitation: Excitation
+    driver: Driver
+
+    @property
+    def chopper(self) -> Chopper | None:
+        """The driver, where it controls the current."""
+        return self.driver if isinstance(self.driver, Chopper) else None
+
+    @property
+    def voltage(self) -> float:
+        """Across a phase at level 1 [V]."""
+        return self.driver.phase_voltage
+
+    @property
+    def amplitude(self) -> float:
+        """Amplitude of the fundamental of the phase voltage that the supply allows [V]."""
+        return self.voltage * self.excitation.fundamental
+
+    @property
+    def current(self) -> float:
+        """Of a phase at level 1 and at rest [A]: what is set, or what the resistance allows."""
+        most = self.voltage / self.motor.resistance
+        return most if self.driver.current is None else min(self.driver.current, most)
+
+    @property
+    def current_amplitude(self) -> float | None:
+        """Amplitude of the fundamental of the current that is set [A]; None where nothing controls it."""
+        return None if self.driver.current is None else self.current * self.excitation.fundamental
+
+    @property
+    def holding(self) -> float:
+        """Greatest torque at rest, with the full current [N·m]."""
+        return holding_torque(self.motor, self.excitation, self.current)
+
+    def pull_out(self, omega: NDArray[np.float64], load: ShaftLoad = FREE) -> NDArray[np.float64]:
+        """Return the torque at which the motor falls out of step at shaft speeds (...) [N·m], frictions taken off."""
+        return pull_out_torque(self.motor, omega, self.amplitude, current=self.current_amplitude, load=load)
+
+    def fastest(self, load: ShaftLoad = FREE) -> float:
+        """Return the speed at which the load takes all torque, without acceleration [rad/s]; 0: it never runs.
+
+        The torque falls steadily with speed, so halving finds it.  Without friction a sinusoidal voltage keeps some
+        torque at any speed where V > K R/(p L): the answer is then infinite, and something else ends it.
+        """
+        against = abs(load.constant)
+
+        def spare(omega: float) -> float:
+            return float(self.pull_out(np.array(omega), load)) - against
+
+        low, high = 0.0, 1.0
+        if spare(0.0) <= 0:
+            return 0.0
+        while spare(high) > 0:
+            low, high = high, 2 * high
+            if high > MOST_SPEED:
+                return math.inf
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if spare(middle) > 0 else (low, middle)
+        return low
+
+    @property
+    def corner(self) -> float | None:
+        """Speed up to which the supply drives the set current [rad/s]; None where nothing controls it."""
+        wanted = self.current_amplitude
+        return None if wanted is None or wanted * self.motor.resistance >= self.amplitude else corner_speed(
+            self.motor, self.amplitude, wanted
+        )  # fmt: skip
+
+
+def fed(motor: HybridStepper, driver: Driver, microsteps: int = 1) -> Fed:
+    """Return a motor behind its driver.
+
+    Parameters
+    ----------
+    microsteps
+        Step pulses a full step; they choose the excitation where the driver names none.
+
+    Raises
+    ------
+    ConfigError
+        For an excitation of other microsteps, or a current the driver or its supply cannot give.
+    """
+    name = driver.excitation or _BY_MICROSTEPS.get(microsteps, f"microstep-{microsteps}")
+    try:
+        mode = excitation(name)
+    except ConfigError as error:
+        raise ConfigError(error.plain, key="driver.excitation", hint=error.hint) from None
+    if mode.steps_per_full_step != microsteps:
+        raise ConfigError(
+            f"{name} takes {mode.steps_per_full_step} pulses a full step, the motor is set to {microsteps}",
+            key="driver.excitation",
+            hint=f"microsteps = {mode.steps_per_full_step} would do.",
+        )
+    result = Fed(motor=replace(motor, resistance=motor.resistance + driver.resistance), excitation=mode, driver=driver)
+    _check_current(result)
+    return result
+
+
+def _check_current(made: Fed) -> None:
+    """Refuse a current that the supply cannot drive, or that the driver does not carry."""
+    driver, resistance = made.driver, made.motor.resistance
+    if driver.current is not None and driver.current * resistance > made.voltage * MOST_OVERLOAD:
+        raise ConfigError(
+            f"{driver.supply:g} V drives at most {made.voltage / resistance:.3g} A through {resistance:.3g} ohm, "
+            f"not {driver.current:g} A",
+            key="driver.current",
+            hint=f"A supply above {driver.current * resistance:.3g} V would do.",
+        )
+    limit = driver.current_limit
+    if limit is not None and made.current > limit * MOST_OVERLOAD:
+        raise ConfigError(
+            f"a phase draws {made.current:.3g} A, the driver carries {limit:g} A",
+            key="driver.current_limit",
+            hint=f"A supply of {driver.supply * limit / made.current:.3g} V would do."
+            if driver.current is None
+            else f"A current of {limit:g} A would do.",
+        )
