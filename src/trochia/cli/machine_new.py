@@ -175,7 +175,7 @@ def _ask_variant(
     defaults = {field.name: field.default for field in fields(cls)}
     answers: dict[str, Any] = {"kind": kind}
     for name, entry in keys_of(cls).items():
-        if name in skip or isinstance(entry.codec, Record | Variant):
+        if name in skip or defaults[name] is None or isinstance(entry.codec, Record | Variant):
             continue
         ready = usual.get(name) if usual["kind"] == kind else None
         if ready is None:
