@@ -11,7 +11,7 @@ PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
 CORE   := $(wildcard core/*.py core/host/*.[ch] core/shared/*.[ch])
-C_CODE := $(wildcard core/host/*.[ch] core/shared/*.[ch])
+C_CODE := $(wildcard core/host/*.[ch] core/shared/*.[ch] firmware/*/*.[ch] tests/firmware/images/*.c)
 C_FLAGS := -std=c11 -O2 -Wall -Wextra -Wconversion -Wswitch-enum -Werror -ffp-contract=off
 JOBS   ?= 2
 SOAK   ?= 1000000

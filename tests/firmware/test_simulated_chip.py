@@ -1,0 +1,94 @@
+"""The simulated chip against cycles counted by hand from the instruction set manual, and where libsimavr 1.6 errs."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from trochia.backends.simulated_chip import LOST, ChipRun, SimulatedChip
+from trochia.errors import LinkError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+BIT = 17 * 8  # 115,200 baud: UBRR 16 at double speed
+BYTE = 10 * BIT  # start, eight data, stop
+
+
+@pytest.fixture
+def counted(start: Callable[[str], SimulatedChip]) -> tuple[SimulatedChip, ChipRun]:
+    chip = start("counted")
+    return chip, chip.run_until(9_000)
+
+
+def test_an_interrupt_costs_what_the_manual_says(counted: tuple[SimulatedChip, ChipRun]):
+    run = counted[1]
+    begin, end = (int(cycle) for cycle in run.edges("B0")[:2])
+    rises, falls = (int(cycle) for cycle in run.edges("B1"))
+    started = begin + 2  # after the sbi
+    flag = started + 41  # the compare value is 40: one count after the counter stands on it
+    assert rises == flag + 4 + 3  # entry, then the jump in the vector table
+    assert falls == rises + 2
+    # sbi, sts, 100 nops; and of the interrupt: entry, jump, sbi, cbi, reti
+    assert end - begin == 2 + 2 + 100 + (4 + 3 + 2 + 2 + 4)
+
+
+def test_waking_costs_four_cycles_more(counted: tuple[SimulatedChip, ChipRun]):
+    run = counted[1]
+    begin, rises = int(run.edges("B0")[2]), int(run.edges("B2")[0])
+    assert rises == begin + 2 + 1001 + 4 + 4 + 3
+    assert run.asleep == rises - 11 - (begin + 2 + 2 + 1)  # from the end of sbi, sts, sleep to the flag
+
+
+def test_flags_are_cleared_one_by_one(counted: tuple[SimulatedChip, ChipRun]):
+    run = counted[1]
+    before, after = (int(cycle) for cycle in (run.edges("C0")[0], run.edges("C2")[0]))
+    assert run.edges("C1")[0] == before  # both flags were up
+    assert run.edges("C0")[1] == after  # A's is cleared
+    assert run.edges("C1")[1] > after  # B's is not
+
+
+def test_a_stopped_timer_keeps_its_count(counted: tuple[SimulatedChip, ChipRun]):
+    rises, falls = (int(cycle) for cycle in counted[1].edges("C3"))
+    assert 100 * 8 <= falls - rises <= 100 * 8 + 10  # a hundred counts; the program polls every five cycles
+
+
+def test_compare_value_zero_matches(counted: tuple[SimulatedChip, ChipRun]):
+    assert counted[1].edges("C4").size == 2
+    assert counted[1].edges("C5").size == 0
+
+
+def test_a_byte_takes_ten_bit_times(counted: tuple[SimulatedChip, ChipRun]):
+    run = counted[1]
+    assert run.sent == b"abc"
+    ends = run.events["cycle"][run.events["kind"] == 2]
+    assert np.diff(ends).tolist() == [BYTE, BYTE]  # back to back: one byte waits behind the shift register
+
+
+def test_the_receiver_holds_two_bytes(counted: tuple[SimulatedChip, ChipRun]):
+    chip, run = counted
+    chip.feed(b"wxyz", not_before=run.cycle + 100)
+    later = chip.run_until(200_000)
+    assert later.sent == b"wx"
+    assert later.lost == 2
+    lost = later.events["cycle"][later.events["kind"] == LOST]
+    assert lost.tolist() == [run.cycle + 100 + 3 * BYTE, run.cycle + 100 + 4 * BYTE]
+    assert later.unread == 0
+
+
+def test_memory_and_inputs(start: Callable[[str], SimulatedChip]):
+    chip = start("counted")
+    chip.write_memory(0x400, b"\x01\x02\x03")
+    assert chip.read_memory(0x400, 4)[:3] == b"\x01\x02\x03"
+    chip.set_pin("D3", 1)
+    assert chip.run_until(10).edges("D3").size == 0  # what comes from outside is no edge of the chip's
+    assert chip.read_memory(0x29, 1)[0] & 8  # PIND
+
+
+def test_a_chip_that_is_gone_is_named(start: Callable[[str], SimulatedChip]):
+    chip = start("counted")
+    chip.close()
+    with pytest.raises(LinkError, match="stopped answering"):
+        chip.run_until(1)
