@@ -15,12 +15,11 @@ from typing import TYPE_CHECKING
 
 from trochia.errors import ModalConflictError, ParseError, ProgramError
 from trochia.languages.gcode.computed import Computed
-from trochia.languages.gcode.owords import BARE, GLOBAL
+from trochia.languages.gcode.owords import BARE, GLOBAL, Control
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from trochia.languages.gcode.owords import Control
     from trochia.languages.gcode.parameters import Frame, Parameters
     from trochia.languages.gcode.place import Place
     from trochia.languages.gcode.texts import Cursor, Mark, Texts
@@ -149,6 +148,10 @@ class Flow:
         del mark
         self._enter(control, name, control.numbers(self._parameters), left=1)
 
+    def call(self, name: str, place: Place, at: int) -> None:
+        """Call a subroutine without arguments, as a line of motion asks; ``at`` is where its number stands."""
+        self._enter(Control("call", name, place, at), name, [], left=1)
+
     def _call_program(self, control: Control, name: str, mark: Mark) -> None:
         del mark
         times = 1 if control.times is None else round(control.guarded(control.times))
@@ -225,7 +228,7 @@ class Flow:
         if label is None or label.word != "do":
             self._while_do(control, name, mark)
             return
-        wanted = control.numbers(self._parameters)[0]
+        wanted = control.number(self._parameters)
         self.skipping = None
         self._continuing = False
         if wanted and not self._breaking:
@@ -234,7 +237,7 @@ class Flow:
         self._breaking = False
 
     def _while_do(self, control: Control, name: str, mark: Mark) -> None:
-        wanted = control.numbers(self._parameters)[0]
+        wanted = control.number(self._parameters)
         self._own(control, name, mark)
         if wanted:
             self.skipping = None
@@ -242,7 +245,7 @@ class Flow:
             self._skip(name, control)
 
     def _repeat(self, control: Control, name: str, mark: Mark) -> None:
-        count = control.numbers(self._parameters)[0]
+        count = control.number(self._parameters)
         label = self._own(control, name, mark)
         self.skipping = None
         if label.left == -1:
@@ -295,12 +298,12 @@ class Flow:
 
     def _if(self, control: Control, name: str, mark: Mark) -> None:
         self._own(control, name, mark)
-        self._branch(control, name, control.numbers(self._parameters)[0])
+        self._branch(control, name, control.number(self._parameters))
 
     def _elseif(self, control: Control, name: str, mark: Mark) -> None:
         del mark
         self._opened(control, name, "if")
-        wanted = control.numbers(self._parameters)[0]
+        wanted = control.number(self._parameters)
         if self._taken:
             self._skip(name, control)
         else:
@@ -330,15 +333,16 @@ class Flow:
     def _opened(self, control: Control, name: str, *words: str) -> Label:
         """Return the label, which one of these words must have opened."""
         label = self.labels.get(name)
+        if label is not None and label.word in words:
+            return label
         wanted = " or ".join(word.upper() for word in words)
         if label is None:
             raise control.fault(ModalConflictError, f"{control.word.upper()} has no {wanted} before it",
                                 hint="Both need the same label.")  # fmt: skip
-        if label.word not in words:
-            opened = f"{label.word.upper() or 'a label'} in line {label.mark.line}"
-            raise control.fault(ModalConflictError, f"{control.word.upper()} belongs to {wanted}, but its label to "
-                                f"{opened}", hint="Give each loop and branch a label of its own.")  # fmt: skip
-        return label
+        opened = f"{label.word.upper() or 'a label'} in line {label.mark.line}"
+        raise control.fault(ModalConflictError,
+                            f"{control.word.upper()} belongs to {wanted}, but its label to {opened}",
+                            hint="Give each loop and branch a label of its own.")  # fmt: skip
 
     # --- passing over
 

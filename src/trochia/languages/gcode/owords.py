@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from trochia.errors import ParseError, ProgramError, UnknownCodeError, VariableError
-from trochia.languages.gcode.expression import Expressions, work_out
+from trochia.languages.gcode.expression import Expressions
 from trochia.languages.gcode.functions import Refusal
 from trochia.languages.gcode.numbers import as_integer
 from trochia.languages.gcode.parameters import ARGUMENTS
@@ -32,6 +32,7 @@ GLOBAL = frozenset(("sub", "endsub", "call", "return", "", "m98", "m99"))  #: la
 BARE = ""  #: a label alone begins a program that M98 calls
 _WORD = re.compile("|".join(sorted(WORDS, key=len, reverse=True)))
 _NAME = re.compile(r"<([^>]*)>")
+_NONE: list[float] = []  # never changed
 _BY_M = {98.0: "m98", 99.0: "m99"}
 
 
@@ -79,12 +80,19 @@ class Control:
         values = self.values
         if values is None:
             values = self.values = self._read(parameters)
-        return [self.guarded(value) for value in values]
+        return [self.guarded(value) for value in values] if values else _NONE
+
+    def number(self, parameters: Parameters) -> float:
+        """Return the only value behind the word; errors are those of :meth:`numbers`."""
+        values = self.values
+        if values is None:
+            values = self.values = self._read(parameters)
+        return self.guarded(values[0])
 
     def guarded(self, value: Value) -> float:
         """Return the number a value is now; what is refused becomes an error of this line."""
         try:
-            return work_out(value)
+            return value() if callable(value) else value
         except Refusal as refusal:
             raise self.fault(ParseError, refusal.message, hint=refusal.hint) from None
         except VariableError as error:

@@ -13,6 +13,7 @@ from trochia.languages.gcode.check import check
 from trochia.languages.gcode.functions import Refusal
 from trochia.languages.gcode.groups.compensation import run_compensated
 from trochia.languages.gcode.registry import G_CODES
+from trochia.program.modes import TimeLaw
 
 if TYPE_CHECKING:
     from trochia.languages.gcode.codes import Code
@@ -45,19 +46,58 @@ class Straight:
         code = self._code or G_CODES.get(state.motion)
         if code is None or code.name not in ("G0", "G1"):
             return False
+        if state.compensation is None and not state.diameter and (code.name == "G0" or self._feeds(state)):
+            self._go(code, state, sink)
+            return True
         block = self._block
-        at = 0
-        try:
-            for letter, column, value, at in self._words:  # noqa: B007 - the error below names it
-                block.values[letter] = block.axes[column] = value() if callable(value) else value
-        except Refusal as refusal:
-            raise block.place.fault(ParseError, refusal.message, at, hint=refusal.hint) from None
+        for (letter, column, _, _), value in zip(self._words, self._values(), strict=True):
+            block.values[letter] = block.axes[column] = value
         check(block, state)
         if state.compensation is None:
             code.run(block, state, sink)
         else:
             run_compensated(code, block, state, sink)
         return True
+
+    @staticmethod
+    def _feeds(state: State) -> bool:
+        """Return whether the feed is one that no rule refuses."""
+        return state.feed != 0.0 and state.law is TimeLaw.PER_SECOND
+
+    def _go(self, code: Code, state: State, sink: Sink) -> None:
+        """Make the move where no rule can refuse it: as its handler does, without a block."""
+        end = state.position.copy()
+        at = 0
+        try:
+            if state.absolute:
+                for _, column, value, at in self._words:  # noqa: B007 - the error below names it
+                    end[column] = value() if callable(value) else value
+            else:
+                for _, column, value, at in self._words:  # noqa: B007 - likewise
+                    end[column] += value() if callable(value) else value
+        except Refusal as refusal:
+            raise self._refused(refusal, at) from None
+        if code.name == "G1":
+            sink.straight_feed(end)
+            state.motion = 10
+        else:
+            sink.straight_traverse(end)
+            state.motion = 0
+        state.position = end
+        state.straight_next = False
+
+    def _values(self) -> list[float]:
+        values: list[float] = []
+        at = 0
+        try:
+            for _, _, value, at in self._words:  # noqa: B007 - likewise
+                values.append(value() if callable(value) else value)
+        except Refusal as refusal:
+            raise self._refused(refusal, at) from None
+        return values
+
+    def _refused(self, refusal: Refusal, at: int) -> ParseError:
+        return self._block.place.fault(ParseError, refusal.message, at, hint=refusal.hint)
 
 
 def straight_of(template: Template, allowed: str) -> Straight | None:

@@ -84,8 +84,12 @@ class Template:
         try:
             parameters.numbered[number] = value() if callable(value) else value
         except Refusal as refusal:
-            raise self.place.fault(ParseError, refusal.message, at, hint=refusal.hint) from None
+            raise self.refused(refusal, at) from None
         return True
+
+    def refused(self, refusal: Refusal, at: int) -> ParseError:
+        """Return the error of a value on this line that cannot be worked out."""
+        return self.place.fault(ParseError, refusal.message, at, hint=refusal.hint)
 
     def fill(self, parameters: Parameters) -> Line:
         """Return the line with its present values; assignments count from the end of the line on.

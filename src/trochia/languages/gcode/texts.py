@@ -22,12 +22,12 @@ _LARGEST = 64 * 1024 * 1024  # bytes of a file with subroutines
 
 @dataclass(slots=True)
 class Text:
-    """A text, and what has been read of it: offset of a line -> line, and offset of the next one."""
+    """A text, and what has been read of it: offset of a line -> line, offset of the next one, and where it stands."""
 
     name: str
     data: bytes | mmap
     main: bool = True
-    templates: dict[int, tuple[Template, int]] = field(default_factory=dict[int, tuple["Template", int]])
+    templates: dict[int, tuple[Template, int, Mark]] = field(default_factory=dict[int, tuple["Template", int, "Mark"]])
 
 
 class Mark(NamedTuple):

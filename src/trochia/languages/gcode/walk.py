@@ -15,6 +15,7 @@ from trochia.languages.gcode.check import check
 from trochia.languages.gcode.execution import execute, pretend_done
 from trochia.languages.gcode.fast import FastPath
 from trochia.languages.gcode.flow import Flow
+from trochia.languages.gcode.functions import Refusal
 from trochia.languages.gcode.groups import saved_modes
 from trochia.languages.gcode.groups.compensation import sink_of
 from trochia.languages.gcode.place import Place
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
 
 HOW_TO_END = "The program must end with M2 or M30, or with a line % if it begins with one."
 _MOST_PATIENCE = 16  # lines the fast path is not tried after it was in vain
+_MOST_AT_ONCE = 1000  # lines of a loop before the walk pauses
 _WORTH = 4  # plain lines in a row, in a loop, that pay the way to C and back
 _CONTROL = re.compile(rb"[ \t\r]*(?:/[ \t\r]*)?(?:[nN][ \t\r0-9.]*)?[oO]")
 
@@ -79,12 +81,11 @@ class Walk:
         """Run the program; yield the number of the last line done, in the main text, again and again."""
         cursor = self._cursor
         while cursor.offset < len(cursor.text.data):
-            known = cursor.text.templates.get(cursor.offset)
-            if known is not None:
-                if self._again(*known):
-                    yield self._shown
-                    return
+            if cursor.offset in cursor.text.templates:
+                ended = self._laps()
                 yield self._shown
+                if ended:
+                    return
                 continue
             if self._fast is not None and self._take_plain(self._fast):
                 yield self._shown
@@ -125,19 +126,47 @@ class Walk:
         for number in range(line, line + count):
             raw, after = next_line(text.data, offset)
             template = read_template(Place(text.name, number, raw), self._state.parameters)
-            template.straight = straight_of(template, self._axes)
-            text.templates[offset] = template, after
+            self._remember(template, Mark(text, offset, number), after)
             offset = after
 
     # --- other lines
 
-    def _again(self, template: Template, after: int) -> bool:
-        """Take a line that has been read before; return whether the program has ended."""
-        cursor = self._cursor
-        mark = Mark(cursor.text, cursor.offset, cursor.line)
-        cursor.offset = after
-        cursor.line += 1
-        return self._run(template, mark)
+    def _remember(self, template: Template, mark: Mark, after: int) -> None:
+        """Keep a line that may run again."""
+        template.straight = straight_of(template, self._axes)
+        if template.setting is not None and template.setting[0] in self._state.parameters.computed:
+            template.setting = None
+        mark.text.templates[mark.offset] = template, after, mark
+
+    def _laps(self) -> bool:
+        """Take lines that have been read before, while they set a parameter, move straight or lead somewhere else.
+
+        Return whether the program has ended.
+        """
+        cursor, flow = self._cursor, self._flow
+        numbered = self._state.parameters.numbered
+        for _ in range(_MOST_AT_ONCE):
+            known = cursor.text.templates.get(cursor.offset)
+            if known is None:
+                return False
+            template, after, mark = known
+            cursor.offset, cursor.line = after, mark.line + 1
+            setting = template.setting
+            if setting is not None and flow.skipping is None and self._left > 0:
+                self._left -= 1
+                flow.line = mark.line
+                value = setting[1]
+                try:
+                    numbered[setting[0]] = value() if callable(value) else value
+                except Refusal as refusal:
+                    self._hand_over(template.refused(refusal, setting[2]))
+                except ProgramError as error:
+                    self._hand_over(error)
+            elif self._run(template, mark):
+                return True
+            elif template.control is None and template.straight is None:
+                return False
+        return False
 
     def _step(self) -> bool:
         """Take the next line; return whether the program has ended."""
@@ -176,8 +205,7 @@ class Walk:
             self._hand_over(error)
             return False
         if self._flow.turning is not None or self._flow.calls:
-            template.straight = straight_of(template, self._axes)
-            mark.text.templates[mark.offset] = template, self._cursor.offset
+            self._remember(template, mark, self._cursor.offset)
         return self._run(template, mark)
 
     def _run(self, template: Template, mark: Mark) -> bool:
