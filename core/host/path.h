@@ -58,15 +58,16 @@ void trochia_path_extents(const trochia_segment *segments, const double *pool, u
 /* What the moves of a program are read with. */
 typedef struct {
     const trochia_move *moves;
-    const uint8_t *rests;               /* per move: 1 = motion is at rest before it */
-    const double *rpm;                  /* per move: spindle speed, read for feeds per revolution only */
-    uint64_t count;                     /* moves */
-    double start[9];                    /* position before the first move */
-    double tolerance;                   /* of the machine, for G64 without P; blends are left out where tolerance < 0 */
-    uint32_t axes;                      /* columns of the path */
-    uint32_t columns[9];                /* which of the nine letters each is */
-    uint32_t continuity;                /* 1: x' is continuous between stops; 2: x'' too */
-    uint32_t paced;                     /* 1: the three below are given */
+    const uint8_t *rests; /* per move: 1 = motion is at rest before it */
+    const double *rpm;    /* per move: spindle speed, read for feeds per revolution only */
+    uint64_t count;       /* moves */
+    double start[9];      /* position before the first move */
+    double tolerance;     /* of the machine, for G64 without P; blends are left out where tolerance < 0 */
+    uint32_t axes;        /* columns of the path */
+    uint32_t columns[9];  /* which of the nine letters each is */
+    uint32_t overlap;     /* continuity 2: corners of lines may be overlaps, at whose ends x'' jumps along x' */
+    uint32_t continuity;  /* 1: x' is continuous between stops; 2: x'' too */
+    uint32_t paced;       /* 1: the three below are given */
     const trochia_spline_piece *pieces; /* of the program's splines, none farther from its curve than spline_error */
     const uint64_t *first_piece;        /* per spline and once more; NULL where there are no splines */
     uint64_t spline_count;

@@ -65,6 +65,8 @@ void trochia_turn_classify(const trochia_frame *frame, const trochia_curve *a, c
         return;
     turn->kind = turn->tolerance > 0.0 ? TROCHIA_TURN_CORNER : TROCHIA_TURN_STOP;
     turn->wish = fmin(6.0 * turn->tolerance / turn->size, trochia_pace_room(frame, a, b, turn->jump));
+    if (frame->in->overlap && turn->kind == TROCHIA_TURN_CORNER)
+        trochia_overlap_want(frame, a, b, turn);
 }
 
 static void next_piece(uint32_t n, const double *c, double k, double *d) {

@@ -19,10 +19,6 @@
 
 static const double UNEVEN = 4.0; /* lines beside a chain's joint differ by no more than this ratio */
 
-static int takes(const trochia_turn *turn) {
-    return turn->kind == TROCHIA_TURN_ARC;
-}
-
 static int passes(const trochia_turn *turn) {
     return turn->kind == TROCHIA_TURN_NONE || turn->kind == TROCHIA_TURN_CORNER || turn->kind == TROCHIA_TURN_CHAIN;
 }
@@ -76,17 +72,17 @@ static int settle_chain(const trochia_chain *chain, uint32_t n, uint64_t i) {
     const trochia_link *beyond = NULL;
     double h0 = trochia_link_at(chain, i - 1)->curve.length, h1 = trochia_link_at(chain, i)->curve.length, h2 = 0.0;
     double there;
-    if (fmax(h0, h1) > UNEVEN * fmin(h0, h1) || takes(&trochia_link_at(chain, i - 1)->turn) ||
-        takes(&trochia_link_at(chain, i + 1)->turn))
+    if (fmax(h0, h1) > UNEVEN * fmin(h0, h1) || trochia_takes(&trochia_link_at(chain, i - 1)->turn) ||
+        trochia_takes(&trochia_link_at(chain, i + 1)->turn))
         return 0;
     turn->lean = fabs(h1 - h0) <= 1e-12 * (h0 + h1) ? 0 : h1 > h0 ? -1 : 1;
     if (turn->lean < 0) {
-        if (i < 2 || takes(&trochia_link_at(chain, i - 2)->turn))
+        if (i < 2 || trochia_takes(&trochia_link_at(chain, i - 2)->turn))
             return 0;
         other = &trochia_link_at(chain, i - 1)->turn;
         beyond = trochia_link_at(chain, i - 2);
     } else if (turn->lean > 0) {
-        if (i + 2 > chain->count || takes(&trochia_link_at(chain, i + 2)->turn))
+        if (i + 2 > chain->count || trochia_takes(&trochia_link_at(chain, i + 2)->turn))
             return 0;
         other = &trochia_link_at(chain, i + 1)->turn;
         beyond = trochia_link_at(chain, i + 1);
@@ -111,8 +107,8 @@ static int settle_chain(const trochia_chain *chain, uint32_t n, uint64_t i) {
  * a joint gives it gets back.  So any chords of a circle bend as the circle does where C, here the longest line's, is
  * the same all along.  Returns 1 when that fits inside what is left of P at the three joints. */
 static int settle_spread(const trochia_chain *chain, uint32_t n, uint64_t i) {
-    if (i < 2 || i + 2 > chain->count || takes(&trochia_link_at(chain, i - 2)->turn) ||
-        takes(&trochia_link_at(chain, i + 2)->turn))
+    if (i < 2 || i + 2 > chain->count || trochia_takes(&trochia_link_at(chain, i - 2)->turn) ||
+        trochia_takes(&trochia_link_at(chain, i + 2)->turn))
         return 0;
     trochia_turn *last = &trochia_link_at(chain, i - 1)->turn, *turn = &trochia_link_at(chain, i)->turn;
     trochia_turn *next = &trochia_link_at(chain, i + 1)->turn;
@@ -155,8 +151,8 @@ void trochia_turn_settle(const trochia_chain *chain, uint32_t n, uint64_t i) {
     const trochia_turn *last = &trochia_link_at(chain, i - 1)->turn, *next = &trochia_link_at(chain, i + 1)->turn;
     double h0 = trochia_link_at(chain, i - 1)->curve.length, h1 = trochia_link_at(chain, i)->curve.length;
     double wish = fmin(turn->wish, 6.0 * fmax(turn->tolerance - turn->used, 0.0) / turn->size);
-    double before = takes(last) ? h0 - last->after : last->kind == TROCHIA_TURN_STOP ? REST_SHARE * h0 : h0;
-    double after = takes(next)                       ? trochia_share(wish, next->wish, h1)
+    double before = trochia_takes(last) ? h0 - last->after : last->kind == TROCHIA_TURN_STOP ? REST_SHARE * h0 : h0;
+    double after = trochia_takes(next)               ? trochia_share(wish, next->wish, h1)
                    : next->kind == TROCHIA_TURN_STOP ? REST_SHARE * h1
                                                      : h1;
     turn->before = turn->after = fmin(wish, fmin(before, after));
@@ -205,7 +201,7 @@ void trochia_emit_bent(trochia_reader *r, const trochia_link *link, const trochi
     const trochia_turn *turn = &link->turn;
     const trochia_curve *line = &link->curve;
     double h = line->length, c[36];
-    double start = takes(turn) ? turn->after : 0.0, end = takes(next) ? h - next->before : h;
+    double start = trochia_takes(turn) ? turn->after : 0.0, end = trochia_takes(next) ? h - next->before : h;
     double first = turn->kind == TROCHIA_TURN_CORNER ? turn->after : start;
     double last = next->kind == TROCHIA_TURN_CORNER ? h - next->before : end;
     double knots[4] = {start, fmin(first, last), fmax(first, last), end};

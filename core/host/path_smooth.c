@@ -5,7 +5,8 @@
 
 #include "host/path_smooth.h"
 
-static void settle_arc(const trochia_frame *frame, const trochia_chain *chain, uint64_t i) {
+/* What a joint that takes part of its curves gets of them. */
+static void settle_taking(const trochia_frame *frame, const trochia_chain *chain, uint64_t i) {
     trochia_link *a = trochia_link_at(chain, i - 1), *b = trochia_link_at(chain, i);
     const trochia_turn *next = &trochia_link_at(chain, i + 1)->turn;
     trochia_turn *turn = &b->turn;
@@ -13,7 +14,8 @@ static void settle_arc(const trochia_frame *frame, const trochia_chain *chain, u
     double after =
         next->wish > 0.0 ? trochia_share(turn->wish, next->wish, b->curve.length) : fmin(turn->wish, b->curve.length);
     turn->before = turn->after = fmin(before, after);
-    trochia_bridge_settle(frame, &a->curve, &b->curve, turn);
+    if (turn->kind == TROCHIA_TURN_ARC)
+        trochia_bridge_settle(frame, &a->curve, &b->curve, turn);
 }
 
 /* Settles the joint at the start of link i; links up to i + 2 are classified, or past the program's end. */
@@ -21,8 +23,8 @@ static void settle(const trochia_frame *frame, const trochia_chain *chain, uint6
     trochia_turn *turn = &trochia_link_at(chain, i)->turn;
     if (turn->kind == TROCHIA_TURN_CORNER)
         trochia_turn_settle(chain, frame->n, i);
-    else if (turn->kind == TROCHIA_TURN_ARC)
-        settle_arc(frame, chain, i);
+    else if (trochia_takes(turn))
+        settle_taking(frame, chain, i);
 }
 
 /* Where the feed changes at the joint, the middle cubic is cut there, so that each side keeps its own. */
@@ -54,6 +56,8 @@ static void emit(trochia_reader *r, const trochia_chain *chain, uint64_t j) {
         r->out->segments[r->out->segment_count - 1].stop = 1;
     else if (turn->kind == TROCHIA_TURN_ARC)
         emit_bridge(r, &link->curve, &next->curve, turn);
+    else if (turn->kind == TROCHIA_TURN_OVERLAP)
+        trochia_emit_overlap(r, &link->curve, &next->curve, turn);
 }
 
 static void end_here(trochia_link *link) {

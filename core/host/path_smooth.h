@@ -12,7 +12,8 @@ enum trochia_turn_kind {
     TROCHIA_TURN_STOP = 1,   /* motion rests */
     TROCHIA_TURN_CORNER = 2, /* two lines: a triangle of x'' with two equal legs */
     TROCHIA_TURN_CHAIN = 3,  /* two lines of a chain: hats of x'' over whole lines */
-    TROCHIA_TURN_ARC = 4     /* an arc takes part: three cubics */
+    TROCHIA_TURN_ARC = 4,    /* an arc takes part: three cubics */
+    TROCHIA_TURN_OVERLAP = 5 /* two lines: the end of one move over the start of the next, one cubic */
 };
 
 /* What happens where a curve begins. */
@@ -50,6 +51,13 @@ typedef struct {
 void trochia_turn_classify(const trochia_frame *frame, const trochia_curve *a, const trochia_curve *b,
                            trochia_turn *turn);
 
+/* Chooses the overlap for a corner of two lines where that is passed faster; its range is 3 wish. */
+void trochia_overlap_want(const trochia_frame *frame, const trochia_curve *a, const trochia_curve *b,
+                          trochia_turn *turn);
+
+/* Appends the cubic of an overlap, cut in two where the feed changes. */
+void trochia_emit_overlap(trochia_reader *r, const trochia_curve *a, const trochia_curve *b, const trochia_turn *turn);
+
 /* Makes the three cubics from `before` the joint to `after` it, shrinking both until they are proven to stay inside
  * P; where none do, the turn becomes a stop. */
 void trochia_bridge_settle(const trochia_frame *frame, const trochia_curve *a, const trochia_curve *b,
@@ -69,6 +77,11 @@ typedef struct {
 
 static inline trochia_link *trochia_link_at(const trochia_chain *chain, uint64_t number) {
     return &chain->ring[number & 7u];
+}
+
+/* Returns 1 where a joint takes the path's place beside it, so that nothing else may bend it there. */
+static inline int trochia_takes(const trochia_turn *turn) {
+    return turn->kind == TROCHIA_TURN_ARC || turn->kind == TROCHIA_TURN_OVERLAP;
 }
 
 /* Settles the joint of two lines at the start of link `i`: a chain's hats where these stay inside P, else a corner. */

@@ -132,19 +132,28 @@ def dense(path, least=4000):
     return points, float((1.2 * bend * (length / (each - 1)) ** 2 / 8).max())
 
 
+def jumps(path, derivative, *, overlap=False):
+    """Jumps of a derivative where motion passes; with ``overlap`` those of x'' across x'."""
+    starts, finishes = ends(path, derivative)
+    apart = (starts[1:] - finishes[:-1])[path.segments["stop"][:-1] == 0]
+    if overlap and derivative == 2:
+        along = ends(path, 1)[0][1:][path.segments["stop"][:-1] == 0]
+        apart = apart - along * ((apart * along).sum(axis=1) / (along * along).sum(axis=1))[:, None]
+    return np.abs(apart).max(initial=0), max(1.0, np.abs(starts).max()) if derivative else 1.0
+
+
+@pytest.mark.parametrize("overlap", [False, True])
 @pytest.mark.parametrize("name", MACHINES)
 @given(data=st.data())
-def test_curvature_jumps_at_stops_only(motion, name, data):
+def test_curvature_jumps_at_stops_only(motion, name, overlap, data):
     machine = motion.machines[name]
     program = data.draw(motion.programs(machine))
-    path = build(program, machine, continuity=2)
+    path = build(program, machine, continuity=2, overlap=overlap)
     if not len(path):
         return
-    passing = path.segments["stop"][:-1] == 0
     for derivative, allowed in ((0, 1e-9), (1, 1e-6), (2, 1e-6)):
-        starts, finishes = ends(path, derivative)
-        scale = max(1.0, np.abs(starts).max()) if derivative else 1.0
-        assert np.abs(starts[1:] - finishes[:-1])[passing].max(initial=0) <= 1.001 * allowed * scale
+        jump, scale = jumps(path, derivative, overlap=overlap)
+        assert jump <= 1.001 * allowed * scale
     assert np.allclose(ends(path, 0)[1][-1], program.moves["target"][-1][list(machine.columns)], atol=1e-9)
     assert (np.diff(path.segments["move"].astype(int)) >= 0).all()
 
@@ -172,8 +181,8 @@ def program_through(points, tolerance):
     return Program(name="chain", lines=len(points), start=np.zeros(9), moves=moves, actions=())
 
 
-def assert_near(program, machine, tolerance):
-    path, exact = build(program, machine, continuity=2), build(program, machine, blend=False)
+def assert_near(program, machine, tolerance, *, overlap=False):
+    path, exact = build(program, machine, continuity=2, overlap=overlap), build(program, machine, blend=False)
     if not len(path):
         return
     (commanded, slack), (programmed, other) = dense(path), dense(exact)
@@ -182,25 +191,23 @@ def assert_near(program, machine, tolerance):
     assert polyline_distance(programmed[::23], commanded).max() <= allowed
 
 
-@given(points=chains(), exponent=st.floats(-4, 0))
-def test_chains_stay_inside_the_tolerance_both_ways_and_are_smooth(motion, points, exponent):
+@given(points=chains(), exponent=st.floats(-4, 0), overlap=st.booleans())
+def test_chains_stay_inside_the_tolerance_both_ways_and_are_smooth(motion, points, exponent, overlap):
     program = program_through(points, 10**exponent)
     machine = motion.machines["mill"]
-    assert_near(program, machine, 10**exponent)
-    path = build(program, machine, continuity=2)
+    assert_near(program, machine, 10**exponent, overlap=overlap)
+    path = build(program, machine, continuity=2, overlap=overlap)
     if not len(path):
         return
-    passing = path.segments["stop"][:-1] == 0
     for derivative in (1, 2):
-        starts, finishes = ends(path, derivative)
-        apart = np.abs(starts[1:] - finishes[:-1])[passing].max(initial=0)
-        assert apart <= 1.1e-9 * max(1.0, np.abs(starts).max())
+        jump, scale = jumps(path, derivative, overlap=overlap)
+        assert jump <= 1.1e-9 * scale
 
 
-@given(data=st.data(), exponent=st.floats(-4, 0))
-def test_smooth_joints_of_arcs_stay_inside_the_tolerance_both_ways(motion, data, exponent):
+@given(data=st.data(), exponent=st.floats(-4, 0), overlap=st.booleans())
+def test_smooth_joints_of_arcs_stay_inside_the_tolerance_both_ways(motion, data, exponent, overlap):
     program = data.draw(motion.programs(motion.machines["mill"], st.just((PathMode.BLEND, 10**exponent)), most=6))
-    assert_near(program, motion.machines["mill"], 10**exponent)
+    assert_near(program, motion.machines["mill"], 10**exponent, overlap=overlap)
 
 
 @given(data=st.data())

@@ -32,6 +32,7 @@ def build(
     columns: Sequence[int],
     tolerance: float,
     continuity: int = 1,
+    overlap: bool = False,
     limits: NDArray[np.float64] | None = None,
     splines: tuple[NDArray[np.void], NDArray[np.uint64], float] | None = None,
 ) -> tuple[NDArray[np.void], NDArray[np.float64], int, tuple[str, int] | None]:
@@ -53,6 +54,8 @@ def build(
         Of G64 without P [mm]; negative: no blends at all.
     continuity
         1: x' is continuous between stops; 2: x'' too.
+    overlap
+        With continuity 2: corners of lines may be overlaps of moves, at whose ends x'' jumps along x'.
     limits
         Velocity, acceleration and jerk of each column (3, axes), infinite where there is none: blends beside slow moves
         are then no longer than these need.
@@ -97,6 +100,7 @@ def build(
         pointer(moves, "trochia_move *"), pointer(flags, "uint8_t *"), pointer(speeds, "double *")
     )  # fmt: skip
     given.count, given.axes, given.tolerance, given.continuity = count, axes, tolerance, continuity
+    given.overlap = overlap
     if limits is not None:
         if limits.shape != (3, axes) or not (limits > 0.0).all():
             raise ValueError("limits are positive, (3, axes)")

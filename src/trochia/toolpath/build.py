@@ -22,7 +22,9 @@ if TYPE_CHECKING:
 SPLINE_ERROR = 1e-4  #: mm: how far a spline's cubics by length may lie from the curve
 
 
-def build(program: Program, machine: Machine, *, blend: bool = True, continuity: int = 1) -> Toolpath:
+def build(
+    program: Program, machine: Machine, *, blend: bool = True, continuity: int = 1, overlap: bool = False
+) -> Toolpath:
     """Return the path of a program on a machine.
 
     Parameters
@@ -36,6 +38,8 @@ def build(program: Program, machine: Machine, *, blend: bool = True, continuity:
     continuity
         What is continuous where motion does not stop: 1, direction; 2, curvature too (``Profile.continuity`` says what
         a velocity profile needs).
+    overlap
+        With continuity 2: lone corners of lines are passed as the overlap of their moves, and x'' jumps along x' there.
 
     Raises
     ------
@@ -48,8 +52,8 @@ def build(program: Program, machine: Machine, *, blend: bool = True, continuity:
     columns = machine.columns
     segments, pool, merged, fault = kernel.build(
         program.moves, _rests(program, machine), _spindle_speeds(program), start=program.start, columns=columns,
-        tolerance=machine.path_tolerance if blend else -1.0, continuity=continuity, limits=_limits(machine),
-        splines=_splines(program),
+        tolerance=machine.path_tolerance if blend else -1.0, continuity=continuity, overlap=overlap,
+        limits=_limits(machine), splines=_splines(program),
     )  # fmt: skip
     if fault and fault[0] == "spline":
         raise ValueError(f"move {fault[1]} follows a spline that is not there or does not lead to its target")

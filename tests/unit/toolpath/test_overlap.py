@@ -1,0 +1,71 @@
+"""Corners of lines as the overlap of their moves, against closed forms."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from trochia.languages import gcode
+from trochia.machine.load import load
+from trochia.toolpath import SegmentKind, build
+
+MILL = load("reference-mill")
+
+
+def path_of(text, machine=MILL):
+    return build(gcode.read(text + "\nM2\n"), machine, continuity=2, overlap=True)
+
+
+def cubics(path):
+    return np.flatnonzero(path.segments["kind"] == SegmentKind.CUBIC)
+
+
+@pytest.mark.parametrize("degrees", [40, 90, 150, 175])
+def test_a_corner_is_one_cubic_that_touches_its_tolerance(degrees):
+    angle, tolerance = math.radians(degrees), 0.02
+    path = path_of(f"G64 P{tolerance}\nG1 X50 F600\nX{50 + 50 * math.cos(angle):.15f} Y{50 * math.sin(angle):.15f}")
+    (row,) = cubics(path)
+    jump = 2 * math.sin(angle / 2)
+    length = path.segments["length"][row]
+    assert length == pytest.approx(24 * tolerance / jump, rel=1e-9)
+    rows, s = np.array([row, row, row]), np.array([0.0, length / 2, length])
+    place, slope, bend = (path.points(rows, s, order) for order in range(3))
+    assert np.linalg.norm(place[1] - [50, 0, 0]) == pytest.approx(tolerance, rel=1e-9)
+    before, after = np.array([1.0, 0, 0]), np.array([math.cos(angle), math.sin(angle), 0])
+    assert place[[0, 2]] == pytest.approx(np.array([[50, 0, 0] - before * length / 3, [50, 0, 0] + after * length / 3]))
+    assert slope[[0, 2]] == pytest.approx(np.array([before, after]), abs=1e-9)
+    assert bend[[0, 2]] == pytest.approx(np.array([-before, after]) * 2 / length, abs=1e-9)
+    assert len(path) == 3
+
+
+def test_a_shallow_corner_keeps_its_bend_continuous():
+    path = path_of("G64 P0.02\nG1 X50 F600\nX100 Y5")
+    assert np.abs(path.points(cubics(path)[:1], np.zeros(1), 2)).max() == 0.0
+
+
+def test_lines_that_are_short_for_it_keep_their_bend_continuous():
+    # 34 P / |m| is where the triangle's legs allow as much: 0.24 mm
+    for size, kinds in ((0.2, 2), (0.3, 1)):
+        path = path_of(f"G64 P0.01\nG1 X{size} F600\nY{size}")
+        assert len(cubics(path)) == kinds
+
+
+def test_each_side_of_an_overlap_keeps_its_feed():
+    path = path_of("G64 P0.01\nG1 X10 F6000\nY10 F5998")
+    rows = cubics(path)
+    assert list(path.segments["speed_limit"][rows]) == pytest.approx([100.0, 5998 / 60])
+    assert list(path.segments["move"][rows]) == [0, 1]
+
+
+def test_an_overlap_beside_a_slow_move_is_short():
+    long, short = (path_of(f"G64 P0.5\nG1 X40 F6000\nY40 F{feed}") for feed in (6000, 60))
+    assert short.segments["length"][cubics(short)].sum() < 0.1 * long.segments["length"][cubics(long)].sum()
+
+
+def test_program_and_corners_stay_inside_their_memory():
+    text = "G64 P0.01\nF600\n" + "\n".join(f"G1 X{k % 2 * 10 + k // 4} Y{k // 2 % 2 * 10 + k // 4}" for k in range(400))
+    program = gcode.read(text + "\nM2\n")
+    path = build(program, MILL, continuity=2, overlap=True)
+    assert program.moves.nbytes + path.segments.nbytes + path.pool.nbytes <= 400 * len(program.moves)
