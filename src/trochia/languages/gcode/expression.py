@@ -23,7 +23,7 @@ from trochia.languages.gcode.functions import (
     finite,
 )
 from trochia.languages.gcode.numbers import as_integer, read_number
-from trochia.languages.gcode.parameters import LAST
+from trochia.languages.gcode.parameters import LAST, no_value
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -199,15 +199,7 @@ class Expressions:
         target, end = self.target(at)
         store = self._parameters
         if isinstance(target, str):
-            name = target
-
-            def named() -> float:
-                try:
-                    return store.get_named(name)
-                except VariableError as error:
-                    raise self._relocated(error, at) from None
-
-            return named, end
+            return self._named(target, at), end
         if not callable(target):
             return self._numbered(int(target), at), end
         number = target
@@ -219,6 +211,21 @@ class Expressions:
                 raise self._relocated(error, at) from None
 
         return indirect, end
+
+    def _named(self, name: str, at: int) -> Thunk:
+        """Return how to read a parameter with a name."""
+        store, is_global = self._parameters, name[:1] == "_"
+        computed = store.predefined.get(name) if is_global else None
+        if computed is not None:
+            return computed.read
+
+        def named() -> float:
+            value = store.shared.get(name) if is_global else store.local.get(name)
+            if value is None:
+                raise self._relocated(no_value(name), at)
+            return value
+
+        return named
 
     def _numbered(self, number: int, at: int) -> Thunk:
         """Return how to read a parameter whose number is known."""

@@ -119,11 +119,7 @@ class Parameters:
         """
         value = self.find(name)
         if value is None:
-            kind = "global" if name[:1] == "_" else "local"
-            raise VariableError(
-                f"the {kind} variable #<{name}> has no value",
-                hint=f"Set it before: #<{name}> = 0.  EXISTS[#<{name}>] tells whether it is set.",
-            )
+            raise no_value(name)
         return value
 
     def check_named(self, name: str) -> None:
@@ -137,6 +133,19 @@ class Parameters:
         computed = self.predefined.get(name)
         if computed is not None and computed.write is None:
             raise VariableError(f"#<{name}> can only be read", hint="The interpreter works it out; use another name.")
+
+    def names_with(self, name: str) -> dict[str, float]:
+        """Return the names that ``name`` is one of; it exists from here on."""
+        names = self.shared if name[:1] == "_" else self.local
+        if name not in names:
+            names[name] = 0.0
+        return names
+
+    def is_plain(self, key: int | str) -> bool:
+        """Return whether a variable is only a value: neither read nor set by way of the state."""
+        if isinstance(key, str):
+            return key not in self.predefined
+        return 1 <= key <= LAST and key not in READ_ONLY and key not in self.computed
 
     def set_named(self, name: str, value: float) -> None:
         """Set ``#<name>``; errors are those of :meth:`check_named`."""
@@ -173,3 +182,10 @@ class Parameters:
 
 def _out_of_range(number: int) -> VariableError:
     return VariableError(f"there is no variable #{number}", hint=f"Numbers go from 1 to {LAST}.")
+
+
+def no_value(name: str) -> VariableError:
+    """Return the error for a name that nothing has set."""
+    kind = "global" if name[:1] == "_" else "local"
+    return VariableError(f"the {kind} variable #<{name}> has no value",
+                         hint=f"Set it before: #<{name}> = 0.  EXISTS[#<{name}>] tells whether it is set.")  # fmt: skip

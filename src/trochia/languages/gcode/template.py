@@ -13,7 +13,6 @@ from trochia.errors import ParseError, VariableError
 from trochia.languages.gcode.expression import work_out
 from trochia.languages.gcode.functions import Refusal
 from trochia.languages.gcode.numbers import as_integer
-from trochia.languages.gcode.parameters import LAST, READ_ONLY
 
 if TYPE_CHECKING:
     from trochia.languages.gcode.expression import Value
@@ -22,6 +21,7 @@ if TYPE_CHECKING:
     from trochia.languages.gcode.place import Place
     from trochia.languages.gcode.straight import Straight
 
+Setting = tuple[int | str, "Value", int]  #: number or name of a parameter, its value, index of the ``#``
 Word = tuple[str, float, int]  #: letter in lower case, value, index of the letter in the compact line
 
 
@@ -56,7 +56,7 @@ class Template:
     control
         The O-word of the line (or M98, M99), which then holds nothing else.
     setting
-        Number, value and place of the only thing on the line, where that is ``#number = value``.
+        Number or name, value and place of the only thing on the line, where that is ``#number = value``.
     straight
         The move of a line that is nothing else, once somebody has asked for it.
     """
@@ -66,7 +66,7 @@ class Template:
     comment: str | None
     control: Control | None = None
     fixed: list[Word] | None = None
-    setting: tuple[int, Value, int] | None = None
+    setting: Setting | None = None
     straight: Straight | None = None
 
     def __post_init__(self) -> None:
@@ -76,20 +76,24 @@ class Template:
             self.fixed = [(item.letter, work_out(item.value), item.at) for item in self.items]
 
     def set_only(self, parameters: Parameters) -> bool:
-        """Let a line act that only sets a numbered parameter, and return True; errors are those of :meth:`fill`."""
+        """Let a line act that only sets a plain parameter, and return True; errors are those of :meth:`fill`."""
         setting = self.setting
-        if setting is None or setting[0] in parameters.computed:
+        if setting is None or not parameters.is_plain(setting[0]):
             return False
-        number, value, at = setting
-        try:
-            parameters.numbered[number] = value() if callable(value) else value
-        except Refusal as refusal:
-            raise self.refused(refusal, at) from None
+        self.set(setting, parameters)
         return True
 
-    def refused(self, refusal: Refusal, at: int) -> ParseError:
-        """Return the error of a value on this line that cannot be worked out."""
-        return self.place.fault(ParseError, refusal.message, at, hint=refusal.hint)
+    def set(self, setting: Setting, parameters: Parameters) -> None:
+        """Set a plain parameter; errors are those of :meth:`fill`."""
+        key, value, at = setting
+        try:
+            if isinstance(key, int):
+                parameters.numbered[key] = value() if callable(value) else value
+            else:
+                names = parameters.names_with(key)
+                names[key] = value() if callable(value) else value
+        except Refusal as refusal:
+            raise self.place.fault(ParseError, refusal.message, at, hint=refusal.hint) from None
 
     def fill(self, parameters: Parameters) -> Line:
         """Return the line with its present values; assignments count from the end of the line on.
@@ -125,13 +129,12 @@ class Template:
         return Line(self.place, words, self.comment)
 
 
-def _plain_setting(item: Item) -> tuple[int, Value, int] | None:
-    """Return an assignment to a number that is known and may be set."""
+def _plain_setting(item: Item) -> Setting | None:
+    """Return an assignment to a number or name that is known."""
     target = item.target
-    if item.letter != "#" or isinstance(target, str) or callable(target):
+    if item.letter != "#" or callable(target):
         return None
-    number = int(target)
-    return (number, item.value, item.at) if 1 <= number <= LAST and number not in READ_ONLY else None
+    return (target if isinstance(target, str) else int(target), item.value, item.at)
 
 
 def _assignment(item: Item, parameters: Parameters) -> tuple[int | str, float]:

@@ -15,7 +15,6 @@ from trochia.languages.gcode.check import check
 from trochia.languages.gcode.execution import execute, pretend_done
 from trochia.languages.gcode.fast import FastPath
 from trochia.languages.gcode.flow import Flow
-from trochia.languages.gcode.functions import Refusal
 from trochia.languages.gcode.groups import saved_modes
 from trochia.languages.gcode.groups.compensation import sink_of
 from trochia.languages.gcode.place import Place
@@ -134,7 +133,7 @@ class Walk:
     def _remember(self, template: Template, mark: Mark, after: int) -> None:
         """Keep a line that may run again."""
         template.straight = straight_of(template, self._axes)
-        if template.setting is not None and template.setting[0] in self._state.parameters.computed:
+        if template.setting is not None and not self._state.parameters.is_plain(template.setting[0]):
             template.setting = None
         mark.text.templates[mark.offset] = template, after, mark
 
@@ -144,7 +143,7 @@ class Walk:
         Return whether the program has ended.
         """
         cursor, flow = self._cursor, self._flow
-        numbered = self._state.parameters.numbered
+        parameters = self._state.parameters
         for _ in range(_MOST_AT_ONCE):
             known = cursor.text.templates.get(cursor.offset)
             if known is None:
@@ -155,11 +154,8 @@ class Walk:
             if setting is not None and flow.skipping is None and self._left > 0:
                 self._left -= 1
                 flow.line = mark.line
-                value = setting[1]
                 try:
-                    numbered[setting[0]] = value() if callable(value) else value
-                except Refusal as refusal:
-                    self._hand_over(template.refused(refusal, setting[2]))
+                    template.set(setting, parameters)
                 except ProgramError as error:
                     self._hand_over(error)
             elif self._run(template, mark):
