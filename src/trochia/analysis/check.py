@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from trochia.analysis.habits import warnings
 from trochia.analysis.margins import margins
 from trochia.analysis.problems import Problem, Severity, from_error, more_lines
+from trochia.analysis.shaped import warning as shaping_warning
 from trochia.analysis.torque import LOST, TorqueUse, lost_step_problems, torque_use
 from trochia.analysis.travel import travel_error
 
@@ -69,6 +70,7 @@ def judge(plan: Plan) -> Verdict:
     """Return the verdict on a plan."""
     uses = torque_use(plan)
     problems = [*lost_step_problems(plan, uses), *warnings(plan.program, plan.machine), *_slowed(plan)]
+    problems += shaping_warning(plan.deviation, plan.machine, plan.program.name)
     outside = travel_error(plan)
     if outside is not None:
         problems.insert(0, from_error(outside, plan.program.name))

@@ -117,7 +117,7 @@ def explain(plan: Plan) -> Explanation:
     stops: list[Floats] = []
     keys: list[NDArray[np.int64]] = []
     sums: list[Floats] = []
-    for phases in trajectory.blocks(_BLOCK):
+    for phases in trajectory.planned_blocks(_BLOCK):
         beside = near[count : count + len(phases)]
         count += len(phases)
         stops.append(np.stack([phases["t"], phases["t"] + phases["duration"]], axis=1)[beside])
@@ -131,6 +131,8 @@ def explain(plan: Plan) -> Explanation:
             key, place = np.unique(line[moving].astype(np.int64) * _CODES + code[moving], return_inverse=True)
             keys.append(key)
             sums.append(np.bincount(place, part[moving], len(key)).astype(np.float64))
+    if trajectory.shaping is not None:
+        total[0, Kind.SHAPER * ROWS] = trajectory.shaping.delay
     key, place = np.unique(np.concatenate([*keys, np.zeros(0, np.int64)]), return_inverse=True)
     names = trajectory.limits.names
     return Explanation(
@@ -178,7 +180,7 @@ def _beside_stops(trajectory: Trajectory) -> NDArray[np.bool_]:
 
 def _trends(trajectory: Trajectory) -> Iterator[tuple[NDArray[np.int8], Floats, Floats]]:
     """Yield of each block whether speed rises, stays or falls (1, 0, -1) in each phase, and its speeds at both ends."""
-    for phases in trajectory.blocks(_BLOCK):
+    for phases in trajectory.planned_blocks(_BLOCK):
         first, d = phases["v"], phases["duration"]
         last = np.maximum(first + d * (phases["a"] + d * phases["j"] / 2), 0.0)
         change = last - first

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from trochia.analysis.shaped import deviation
 from trochia.planner import PROFILES, Trajectory, profile_of
 from trochia.planner import plan as plan_motion
 from trochia.toolpath import Measure, Toolpath, build, measure_program
@@ -17,6 +18,7 @@ from trochia.toolpath import Measure, Toolpath, build, measure_program
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from trochia.analysis.shaped import Deviation
     from trochia.machine.machine import Machine
     from trochia.program import Program
 
@@ -33,6 +35,8 @@ class Plan:
         Lengths, counts and extents of the programmed path.
     trajectory
         Motion over time.
+    deviation
+        How far input shaping takes it off its path; None where nothing is shaped.
     """
 
     program: Program
@@ -40,6 +44,7 @@ class Plan:
     path: Toolpath
     size: Measure
     trajectory: Trajectory
+    deviation: Deviation | None = None
 
     def programmed(self) -> Toolpath:
         """Return the path as written, without blends, each segment one move; it is built at each call."""
@@ -92,7 +97,22 @@ class Plan:
             "extents": self.extents,
             "feed_extents": self.feed_extents,
             "peaks": self.trajectory.peaks,
+            "shaping": self._shaping(),
         }
+
+    def _shaping(self) -> dict[str, Any] | None:
+        """Return what input shaping there is, and what it costs; None without any."""
+        shaping = self.trajectory.shaping
+        if shaping is None or self.deviation is None:
+            return None
+        return {
+            "axes": {axis.name: {"shaper": axis.resonance.shaper, "frequency_hz": axis.resonance.frequency,
+                                 "damping": axis.resonance.damping}
+                     for axis in self.machine.axes if axis.resonance is not None and axis.resonance.shaper},
+            "delay_s": shaping.delay,
+            "deviation_mm": self.deviation.peak,
+            "deviation_line": self.deviation.line,
+        }  # fmt: skip
 
 
 def make(program: Program, machine: Machine, *, profile: str | None = None) -> Plan:
@@ -105,12 +125,14 @@ def make(program: Program, machine: Machine, *, profile: str | None = None) -> P
     """
     name = profile_of(machine, profile)
     path = build(program, machine, continuity=PROFILES[name].continuity)
+    trajectory = plan_motion(path, machine, program=program, profile=name)
     return Plan(
         program=program,
         machine=machine,
         path=path,
         size=measure_program(program, machine),
-        trajectory=plan_motion(path, machine, program=program, profile=name),
+        trajectory=trajectory,
+        deviation=deviation(trajectory, machine.servo_period),
     )
 
 

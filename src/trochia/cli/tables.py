@@ -63,6 +63,11 @@ def show_plan(plan: Plan) -> None:
         f"length   {plan.feed_length_mm:.3f} mm in {plan.size.feed_moves} feed moves, "
         f"{plan.rapid_length_mm:.3f} mm in {plan.size.moves - plan.size.feed_moves} rapids, {plan.program.lines} lines"
     )
+    if plan.trajectory.shaping is not None and plan.deviation is not None:
+        from trochia.analysis.shaped import words  # noqa: PLC0415 - `trochia --help` must stay light
+
+        click.echo(f"shaping  {words(plan.machine)}: up to {plan.deviation.peak:.3f} mm off the path, "
+                   f"ends {1000 * plan.trajectory.shaping.delay:.1f} ms later")  # fmt: skip
     rows = [["axis", "from", "to", "peak velocity", "of", "peak acceleration", "of"]]
     extents, all_peaks = plan.extents, plan.trajectory.peaks
     for axis in plan.machine.axes:

@@ -8,7 +8,8 @@ from enum import Enum
 from trochia.errors import ConfigError
 from trochia.machine.acceleration import AccelerationCurve, CurveOfAcceleration
 from trochia.machine.codecs import Quantity, Text
-from trochia.machine.schema import Bound, check_bounds, key
+from trochia.machine.resonance import Resonance
+from trochia.machine.schema import Bound, Record, check_bounds, key
 
 LETTERS = "XYZABCUVW"  #: in the order of every machine's axes and of a program's columns
 
@@ -55,6 +56,9 @@ class Axis:
     acceleration_curve: AccelerationCurve | None = field(
         default=None,
         metadata=key(CurveOfAcceleration(), "greatest acceleration by speed, falling; the profile torque follows it"),
+    )
+    resonance: Resonance | None = field(
+        default=None, metadata=key(Record(Resonance), "how the axis swings, and the shaper that cancels it")
     )
 
     def __post_init__(self) -> None:

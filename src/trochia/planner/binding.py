@@ -42,6 +42,7 @@ class Kind(IntEnum):
     PATH_ACCELERATION = 7  #: on its acceleration
     PATH_JERK = 8  #: on its jerk
     DRIVE = 9  #: the least time a segment may take at the drive
+    SHAPER = 10  #: input shaping, which ends motion later
 
 
 _WORDS = {
@@ -54,6 +55,7 @@ _WORDS = {
     Kind.PATH_VELOCITY: "path velocity cap",
     Kind.PATH_ACCELERATION: "path acceleration cap",
     Kind.PATH_JERK: "path jerk cap",
+    Kind.SHAPER: "input shaping",
     Kind.DRIVE: "least time of a segment at the drive",
 }
 

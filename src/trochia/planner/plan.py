@@ -11,6 +11,7 @@ from trochia.errors import LimitError
 from trochia.planner.limits import Limits
 from trochia.planner.rests import rests_of
 from trochia.planner.s_curve import SCurveSchedule
+from trochia.planner.shaping import Shaping
 from trochia.planner.trajectory import Trajectory
 from trochia.planner.trapezoid import TrapezoidSchedule
 
@@ -42,7 +43,7 @@ def profile_of(machine: Machine, asked: str | None = None) -> str:
 
 
 def plan(path: Toolpath, machine: Machine, *, program: Program, profile: str = "trapezoid") -> Trajectory:
-    """Return the motion of a program along its path, as fast as the machine's limits allow.
+    """Return the motion of a program along its path, as fast as the machine's limits allow, and shaped as it asks.
 
     Parameters
     ----------
@@ -59,10 +60,11 @@ def plan(path: Toolpath, machine: Machine, *, program: Program, profile: str = "
     rests = rests_of(program, machine, path)
     schedule = PROFILES[profile](_paced(path, limits), limits, rests) if len(path) else None
     still = sum(rests.times.values())
-    duration = still if schedule is None else schedule.duration
+    shaping = None if schedule is None else Shaping.of(machine, limits)
+    duration = (still if schedule is None else schedule.duration) + (shaping.delay if shaping else 0.0)
     return Trajectory(
         program=program, path=path, limits=limits, profile=profile, schedule=schedule,
-        times={"motion": duration - still} | rests.times, duration=duration,
+        times={"motion": duration - still} | rests.times, duration=duration, shaping=shaping,
     )  # fmt: skip
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from trochia.errors import LimitError
 from trochia.kernels import path as kernel
 from trochia.kernels.layout import PHASE
 from trochia.planner.binding import Binding, bind
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 
     from trochia.planner.limits import Limits
     from trochia.planner.schedule import Schedule
+    from trochia.planner.shaping import Shaping
     from trochia.program import Program
     from trochia.toolpath import Toolpath
 
@@ -40,6 +42,9 @@ class Trajectory:
         Total time by cause: ``motion``, ``dwell``, ``spindle``, ``tool`` [s]; they sum to ``duration``.
     duration
         Whole time [s].
+    shaping
+        What every axis passes through after planning; None: nothing.  It makes motion end later, by its delay, and the
+        path rounder; line and power are those of its mean instant.
     """
 
     program: Program
@@ -49,12 +54,27 @@ class Trajectory:
     schedule: Schedule | None
     times: dict[str, float]
     duration: float
+    shaping: Shaping | None = None
 
     def blocks(self, size: int = BLOCK) -> Iterator[NDArray[Any]]:
         """Yield all phases in order, at most ``size`` (4 or more) a block (PHASE,).
 
         A path without motion has one phase if it has time, a rest, whose segment is not there.
+
+        Raises
+        ------
+        LimitError
+            When motion is shaped: then it is not along the path any more (:meth:`planned_blocks` gives what is shaped).
         """
+        if self.shaping is not None:
+            raise LimitError(
+                "a shaped motion has no phases along its path",
+                hint="Take the shaper out of the machine file's resonance, or use positions over time.",
+            )
+        return self.planned_blocks(size)
+
+    def planned_blocks(self, size: int = BLOCK) -> Iterator[NDArray[Any]]:
+        """Yield all phases in order as they were planned, before any shaping (PHASE,)."""
         if self.schedule is not None:
             yield from self.schedule.phases(size)
         elif self.duration > 0.0:
@@ -63,7 +83,13 @@ class Trajectory:
             yield rest
 
     def states(self, times: ArrayLike) -> NDArray[Any]:
-        """Return segment, s, v, a, j and flags at each time [s], clamped to the ends (times,) of PHASE."""
+        """Return segment, s, v, a, j and flags at each time [s], clamped to the ends (times,) of PHASE.
+
+        Of a shaped motion they are those planned for the mean instant.
+        """
+        return self._planned_states(np.asarray(times, dtype=np.float64) - (self.shaping.mean if self.shaping else 0.0))
+
+    def _planned_states(self, times: ArrayLike) -> NDArray[Any]:
         at = np.atleast_1d(np.asarray(times, dtype=np.float64))
         if self.schedule is not None:
             return self.schedule.states(at)
@@ -75,7 +101,22 @@ class Trajectory:
         if self.schedule is None:
             still = self.path.start if order == 0 else np.zeros(len(self.path.axes))
             return np.tile(still, (len(np.atleast_1d(np.asarray(times))), 1))
-        return kernel.sample(self.path.segments, self.path.pool, len(self.path.axes), self.states(times), order)
+        at = np.atleast_1d(np.asarray(times, dtype=np.float64))
+        if self.shaping is None:
+            return self._planned(at, order)
+        end = self.duration - self.shaping.delay
+
+        def planned(when: NDArray[np.float64]) -> NDArray[np.float64]:
+            values = self._planned(when, order)
+            if order:
+                values[(when < 0.0) | (when > end)] = 0.0
+            return values
+
+        return self.shaping.apply(planned, at)
+
+    def _planned(self, times: NDArray[np.float64], order: int) -> NDArray[np.float64]:
+        states = self._planned_states(times)
+        return kernel.sample(self.path.segments, self.path.pool, len(self.path.axes), states, order)
 
     def position(self, times: ArrayLike) -> NDArray[np.float64]:
         """Return the axes' positions at each time (times, n) [mm, degree]."""
@@ -134,7 +175,10 @@ class Trajectory:
 
     @property
     def peaks(self) -> dict[str, dict[str, float | None]]:
-        """Greatest |velocity|, |acceleration| and |jerk| of each axis; jerk None where the profile lets it be."""
+        """Greatest |velocity|, |acceleration| and |jerk| of each axis; jerk None where the profile lets it be.
+
+        Of a shaped motion they are those planned, which it does not exceed.
+        """
         rows = {} if self.schedule is None else self.schedule.peaks()
         jerk = 0.0 if self.schedule is None else None
         none: dict[str, float | None] = {"velocity": 0.0, "acceleration": 0.0, "jerk": jerk}

@@ -18,12 +18,13 @@ from trochia.machine.kinematics import KINEMATICS
 from trochia.machine.loads import JointLoad
 from trochia.machine.machine import Machine
 from trochia.machine.motors import CatalogueStepper
+from trochia.machine.resonance import Resonance
 from trochia.machine.schema import Bound, Key, Record, Variant, keys_of
 from trochia.machine.transmissions import TRANSMISSIONS
 
 PAGE = Path(__file__).parents[3] / "docs" / "reference" / "machine-file.md"
 TABLES = {
-    "Top of the file": Machine, "path": PathLimits, "axes.X": Axis, "joints.X": Joint, "encoder": Encoder,
+    "Top of the file": Machine, "path": PathLimits, "axes.X": Axis, "resonance": Resonance, "joints.X": Joint, "encoder": Encoder,
     "pulses": PulseTiming, "spindle": Spindle, "beam": Beam, "io.NAME": Channel,
     "catalogue": CatalogueStepper, "load": JointLoad,
 } | {f"motor, kind {kind}": cls for kind, cls in MOTORS.items()} | {
