@@ -1,0 +1,201 @@
+"""Look-ahead in bounded windows.  In: a road, rules, where motion begins at rest.  Out: phases, and which are final.
+
+Each window ends at rest: there is always a stop in hand.  Its end is not final, as the whole program would pass there
+at speed; all but the last *settling time* of it is.  The next window begins, at rest too, so far behind what is final
+that both have come to the same speed there; at that joint the one goes on as the other.  That they agree is checked,
+so nothing is assumed of the profile; where they do not, the window begins earlier, at last where motion was at rest
+indeed.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from trochia.kernels.layout import PHASE
+from trochia.planner.live.road import Place
+from trochia.planner.live.window import plan_window
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from trochia.planner.live.road import Road
+    from trochia.planner.live.window import Rules, Speeds
+
+SETTLE = 2.0  #: settling time, in worst stopping times: on bends less than the whole limit is left for braking
+WARM = 3.0  #: how far behind a window begins, in the same
+WINDOW = 40.0  #: how much a window adds, in the same
+FIRST = 5.0  #: and the first, so that motion begins soon
+_SAME_SPEED = 1e-9  #: of each other
+_SAME_ACCELERATION = 1e-7  #: of the limit
+_BLOCK = 8192
+
+
+class Lookahead:
+    """Motion along a road from rest at ``start``, planned as it is asked for.
+
+    Attributes
+    ----------
+    phases
+        Those in hand (k,) of PHASE: t from the start of all motion, segments by the road's rows; they end at rest.
+    safe
+        How many of them are final.
+    """
+
+    def __init__(self, road: Road, rules: Rules, start: Place, t: float, speeds: Speeds) -> None:
+        self.road, self.rules, self.speeds = road, rules, speeds
+        self._start, self._begin = start, t
+        self._stop = rules.stopping_time
+        self._span = FIRST
+        self._end = self._reach(start.row, FIRST + SETTLE)
+        self.phases = self._from(start, t)
+        self.safe = 0
+        self._settle()
+
+    @property
+    def finished(self) -> bool:
+        """Whether all of the program is planned, and final."""
+        return self.road.ended and self._end >= self.road.end
+
+    @property
+    def safe_time(self) -> float:
+        """Until when the phases are final [s]."""
+        return self._end_of(self.safe)
+
+    @property
+    def end_time(self) -> float:
+        """When the phases in hand come to rest [s]."""
+        return self._end_of(len(self.phases))
+
+    def extend(self) -> bool:
+        """Plan further until more is final; False when all is final already."""
+        if self.finished:
+            return False
+        before = self.safe
+        while self.safe == before and not self.finished:
+            self._end = self._reach(self._end, self._span)
+            self._join()
+            self._settle()
+            self._span = min(2.0 * self._span, WINDOW)
+        return True
+
+    def forget(self, t: float) -> int:
+        """Drop phases that end before ``t`` and that no further window needs; return how many."""
+        most = self.safe_time - 4.0 * WARM * self._stop
+        joints = _joints(self.phases)
+        behind = joints[self.phases["t"][joints] <= min(t, most)]
+        drop = int(behind[-1]) if len(behind) else 0
+        if drop:
+            self.phases = self.phases[drop:].copy()
+            self.safe -= drop
+            self.road.trim(int(self.phases["segment"][0]))
+        return drop
+
+    def _end_of(self, count: int) -> float:
+        if not count:
+            return self._begin if not len(self.phases) else float(self.phases["t"][0])
+        last = self.phases[count - 1]
+        return float(last["t"] + last["duration"])
+
+    def _from(self, start: Place, t: float) -> NDArray[Any]:
+        """Return the motion from rest at a place to the end of the window, begun at ``t``."""
+        if self._end > start.row:
+            phases = plan_window(self.road, self.rules, start, self._end, self.speeds)
+        else:
+            phases = _still(self.road, start)
+        phases["t"] += t
+        return phases
+
+    def _reach(self, row: int, times: float) -> int:
+        """Return the row some (worst stopping) times after ``row`` at least, if all went at full speed."""
+        road, wanted, end = self.road, times * self._stop, row
+        limits = self.rules.limits
+        most = min(float(np.linalg.norm(limits.velocity[: limits.matrix.shape[1]])), limits.path_velocity)
+        while wanted > 0.0:
+            if end >= road.end and not road.more():
+                return road.end
+            rows = road.segments[end - road.base : end - road.base + _BLOCK]
+            times_of = np.cumsum(rows["length"] / np.minimum(rows["speed_limit"] * self.speeds.feed, most))
+            count = min(int(np.searchsorted(times_of, wanted)) + 1, len(rows))
+            wanted -= float(times_of[count - 1]) if count else 0.0
+            end += count
+        if end >= road.end:
+            road.more()  # whether the program ends here
+        return end
+
+    def _settle(self) -> None:
+        """Find how many phases are final: up to the last joint that lies a settling time before the end."""
+        if self.finished:
+            self.safe = len(self.phases)
+            return
+        joints = _joints(self.phases)
+        settled = self.phases["t"][joints] <= self.end_time - SETTLE * self._stop
+        if settled.any():
+            self.safe = max(self.safe, int(joints[settled][-1]))
+
+    def _join(self) -> None:
+        """Plan to the new end, and go on so where both plans agree."""
+        old, joint = self.phases, self.safe
+        if joint == 0:
+            self.phases = self._from(self._start, self._begin)
+            return
+        joints, t = _joints(old), float(old["t"][joint])
+        warm = WARM * self._stop
+        while True:
+            behind = joints[old["t"][joints] <= t - warm]
+            start = Place(int(old["segment"][behind[-1]]), 0.0) if len(behind) else self._first()
+            new = self._from(start, 0.0)
+            if self._splice(new, [joint]):
+                return
+            if not len(behind):
+                break
+            warm *= 2.0
+        if not self._splice(new, [int(k) for k in joints[joints > joint]]):
+            rest = self.end_time
+            self.phases = np.concatenate([old, self._from(Place(int(old["segment"][-1]) + 1, 0.0), rest)])
+
+    def _first(self) -> Place:
+        """Return where the phases in hand begin: at rest where motion does, else at a joint."""
+        first = self.phases[0]
+        if first["t"] <= self._begin:
+            return self._start
+        joint = int(_joints(self.phases)[0])
+        return Place(int(self.phases["segment"][joint]), 0.0)
+
+    def _splice(self, new: NDArray[Any], joints: list[int]) -> bool:
+        """Go on as ``new`` from the first of some joints where it agrees with the phases in hand; False: nowhere."""
+        at = {int(new["segment"][k]): int(k) for k in _joints(new)}
+        for joint in joints:
+            here = self.phases[joint]
+            k = at.get(int(here["segment"]))
+            if k is not None and self._agree(here, new[k]):
+                rest = new[k:].copy()
+                rest["t"] += here["t"] - rest["t"][0]
+                self.phases = np.concatenate([self.phases[:joint], rest])
+                return True
+        return False
+
+    def _agree(self, here: NDArray[Any], there: NDArray[Any]) -> bool:
+        if abs(here["v"] - there["v"]) > _SAME_SPEED * (here["v"] + there["v"]):
+            return False
+        small = _SAME_ACCELERATION * float(self.rules.limits.acceleration.min())
+        return not self.rules.jerk_limited or bool(abs(here["a"] - there["a"]) <= small)
+
+
+def _joints(phases: NDArray[Any]) -> NDArray[np.intp]:
+    """Return which phases begin where their segment begins, in motion (j,), rising."""
+    moving = np.flatnonzero(phases["flags"] == 0)
+    segments = phases["segment"][moving]
+    fresh = np.ones(len(moving), dtype=np.bool_)
+    fresh[1:] = segments[1:] != segments[:-1]
+    fresh &= phases["s"][moving] <= 1e-9
+    return moving[fresh]
+
+
+def _still(road: Road, start: Place) -> NDArray[Any]:
+    """Return the phases where nothing moves any more: a rest, or none."""
+    _, seconds = road.rests_between(start.row, road.end)
+    phases = np.zeros(1 if seconds.sum() > 0.0 else 0, dtype=PHASE)
+    phases["duration"], phases["flags"], phases["segment"] = seconds.sum(), 1, max(start.row - 1, 0)
+    return phases

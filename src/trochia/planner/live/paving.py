@@ -1,0 +1,190 @@
+"""A path built piece by piece.  In: blocks of a program, as an interpreter yields them.  Out: stretches of its path.
+
+What a joint becomes depends on a few moves around it, and where Q merges lines, on where the run began.  So a piece is
+built with :data:`REACH` runs before and behind it, from the beginning of a run, and what lies there is thrown away.
+Where chords grow evenly, one blend can depend on the last for hundreds of them: so the first segment of each piece is
+compared with what the piece before had made of it, and where they differ, it is built once more with a long history.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from trochia.errors import PlanningError
+from trochia.planner.live.road import Stretch
+from trochia.planner.rests import rests_of
+from trochia.program import MoveKind, Program, Spindle
+from trochia.toolpath import build
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from numpy.typing import NDArray
+
+    from trochia.machine.machine import Machine
+    from trochia.program import Action
+    from trochia.toolpath import Toolpath
+
+REACH = 64  #: runs on either side that a joint may depend on, with much room
+HISTORY = 8_192  #: moves kept for the other case
+_CHUNK = 16_384  #: moves at a time: their path stays in the cache
+_SAME = 1e-9  #: mm, degree
+_FIRST = 1_024  #: and at the start, so that motion begins soon
+
+
+def pave(blocks: Iterable[Program], machine: Machine, *, continuity: int) -> Iterator[Stretch]:
+    """Yield the path of a program whose blocks follow each other; each counts moves and actions from its own start.
+
+    Raises
+    ------
+    PlanningError, LimitError
+        As :func:`trochia.toolpath.build`.
+    """
+    return _Paver(machine, continuity).run(iter(blocks))
+
+
+class _Paver:
+    """Moves in hand: those not yet built, and those before them that are needed to build on."""
+
+    def __init__(self, machine: Machine, continuity: int) -> None:
+        self._machine, self._continuity = machine, continuity
+        self._moves: list[NDArray[Any]] = []
+        self._program: Program | None = None
+        self._splines: NDArray[np.float64] = np.zeros((0, 4, 3))  # those of the moves in hand
+        self._actions: list[Action] = []  # `at` counts from the program's start
+        self._base = self._end = 0  # number of the first move in hand, and after the last
+        self._done = 0  # all that moves before this one have become is out
+        self._starts: list[int] = []  # moves in hand at which runs begin
+        self._near = 0  # which of the moves in hand the next piece is built from
+        self._seam: tuple[float, NDArray[np.float64]] | None = None  # what the next piece must begin with
+        self._spindle: Spindle | None = None  # as it turns at the first move in hand
+
+    def run(self, blocks: Iterator[Program]) -> Iterator[Stretch]:
+        size = _FIRST
+        for block in blocks:
+            for part in _parts(block):
+                self._take(part)
+                if self._end - self._done >= size + 2 * REACH:
+                    stretch = self._build(last=False)
+                    if stretch is not None:
+                        size = min(2 * size, _CHUNK)
+                        yield stretch
+        if self._program is not None and (stretch := self._build(last=True)) is not None:
+            yield stretch
+
+    def _take(self, block: Program) -> None:
+        if self._program is None:
+            self._program = replace(block, moves=block.moves[:0], actions=(), splines=block.splines[:0])
+        if len(block.splines):
+            block = _own_splines(block, len(self._splines))
+            self._splines = np.concatenate([self._splines, block.splines])
+        self._actions += [replace(action, at=action.at + self._end) for action in block.actions]
+        self._moves.append(block.moves)
+        self._end += len(block.moves)
+
+    def _build(self, *, last: bool) -> Stretch | None:
+        """Return what can be said of the moves in hand; None where that is nothing."""
+        self._moves = [np.concatenate(self._moves)]
+        program, path, first = self._path(self._near)
+        if not self._fits(path, first):
+            program, path, first = self._path(0)
+            if not self._fits(path, first):
+                raise PlanningError("the path cannot be built piece by piece: its joints depend on too many before")
+        moves, from_row = path.segments["move"], self._base + len(self._moves[0]) - len(program.moves)
+        runs = np.unique(moves[first:])
+        if not last and len(runs) <= 2 * REACH:
+            return None
+        cut = int(runs[-REACH]) if not last else len(program.moves) + 1
+        end = int(np.searchsorted(moves, cut))
+        stretch = self._stretch(program, path, first, end, last=last, base=from_row)
+        if not last:
+            self._seam = _look(path, end)
+            before = np.unique(moves[:end])
+            near = int(before[-REACH]) if len(before) >= REACH else 0
+            self._done = from_row + cut
+            self._drop(from_row + near)
+        return stretch
+
+    def _path(self, skip: int) -> tuple[Program, Toolpath, int]:
+        """Return the moves in hand but the first ``skip`` as a program, its path, and its first segment not out yet."""
+        assert self._program is not None, "a path is built of at least one block"
+        held, base = self._moves[0], self._base + skip
+        turning = [a for a in self._actions if isinstance(a, Spindle) and a.at < base]
+        before = [turning[-1]] if turning else [self._spindle] if self._spindle else []
+        actions = [replace(a, at=max(a.at - base, 0)) for a in (*before, *(a for a in self._actions if a.at >= base))]
+        start = self._program.start if skip == 0 else held["target"][skip - 1].copy()
+        program = replace(self._program, start=start, moves=held[skip:], actions=tuple(actions), splines=self._splines)
+        program = _own_splines(program, 0) if len(self._splines) else program
+        path = build(program, self._machine, continuity=self._continuity)
+        return program, path, int(np.searchsorted(path.segments["move"], max(self._done - base, 0)))
+
+    def _fits(self, path: Toolpath, first: int) -> bool:
+        """Return whether a piece begins with what the one before said would come."""
+        if self._seam is None or first == len(path):
+            return True
+        length, head = _look(path, first)
+        return bool(abs(length - self._seam[0]) <= _SAME and (np.abs(head - self._seam[1]) <= _SAME).all())
+
+    def _stretch(self, program: Program, path: Toolpath, first: int, end: int, *, last: bool,
+                 base: int) -> Stretch:  # fmt: skip
+        rests = rests_of(program, self._machine, path)
+        kept = (rests.segments >= first) & ((rests.segments < end) | last)
+        rows = path.segments[first:end].copy()
+        low = int(rows["data"][0]) if len(rows) else 0
+        high = int(path.segments["data"][end]) if end < len(path) else len(path.pool)
+        lines, power = program.moves["line"][rows["move"]], program.moves["power"][rows["move"]]
+        rows["data"] -= np.uint64(low)
+        rows["move"] += np.uint32(base)
+        return Stretch(segments=rows, pool=path.pool[low:high].copy(), lines=lines, power=power,
+                       rests=rests.segments[kept] - np.uint64(first), seconds=rests.seconds[kept],
+                       start=path.start)  # fmt: skip
+
+    def _drop(self, near: int) -> None:
+        """Note from which move, the first of a run, the next piece is built; drop moves that lie too far before it."""
+        self._starts.append(near)
+        base = max((start for start in self._starts if start <= near - HISTORY), default=self._base)
+        if base > self._base:
+            assert self._program is not None, "moves are dropped of a program"
+            held, keep = self._moves[0], base - self._base
+            turning = [a for a in self._actions if isinstance(a, Spindle) and a.at < base]
+            self._spindle = turning[-1] if turning else self._spindle
+            self._actions = [action for action in self._actions if action.at >= base]
+            self._program = replace(self._program, start=held["target"][keep - 1].copy())
+            self._moves, self._base = [held[keep:].copy()], base
+            if len(self._splines):
+                kept = _own_splines(replace(self._program, moves=self._moves[0], splines=self._splines), 0)
+                self._moves, self._splines = [kept.moves], kept.splines
+            self._starts = [start for start in self._starts if start >= base]
+        self._near = near - self._base
+
+
+def _own_splines(program: Program, first: int) -> Program:
+    """Return a program with only the splines its moves follow, numbered from ``first``."""
+    moves = program.moves.copy()
+    curved = moves["kind"] == MoveKind.SPLINE
+    used, rows = np.unique(moves["turns"][curved], return_inverse=True)
+    moves["turns"][curved] = rows + first
+    return replace(program, moves=moves, splines=program.splines[used])
+
+
+def _look(path: Toolpath, row: int) -> tuple[float, NDArray[np.float64]]:
+    """Return length and first coefficients of a segment."""
+    at = int(path.segments["data"][row])
+    return float(path.segments["length"][row]), path.pool[at : at + 2 * len(path.axes)].copy()
+
+
+def _parts(block: Program) -> Iterator[Program]:
+    """Yield a block in parts of a bounded number of moves, without looking at all of its moves at once."""
+    if len(block.moves) <= _FIRST:
+        yield block
+        return
+    actions = list(block.actions)
+    for first in range(0, len(block.moves), _FIRST):
+        end = min(first + _FIRST, len(block.moves))
+        own = [a for a in actions if a.at < end or end == len(block.moves)]
+        actions = actions[len(own) :]
+        yield replace(block, moves=block.moves[first:end],
+                      actions=tuple(replace(a, at=a.at - first) for a in own))  # fmt: skip

@@ -1,0 +1,60 @@
+"""Streaming: a program of any length planned as it comes.  In: blocks of a program.  Out: portions of its motion.
+
+Memory is bounded by the window, which is counted in time, never in blocks.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from trochia.planner.live.lookahead import Lookahead
+from trochia.planner.live.paving import pave
+from trochia.planner.live.portion import Portion
+from trochia.planner.live.road import Place, Road
+from trochia.planner.live.window import Rules, Speeds
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from trochia.machine.machine import Machine
+    from trochia.program import Program
+
+
+class StreamPlanner:
+    """The motion of a program, portion by portion, each final.
+
+    At every instant earlier than a window's end less the settling time (twice the worst stopping time) it is that of
+    the whole program planned at once, within 1e-9.
+
+    Parameters
+    ----------
+    blocks
+        The program as an interpreter yields it: each block goes on where the last ended, and counts its moves and
+        actions from its own start.
+    profile
+        As in :func:`trochia.planner.profile_of`.
+
+    Raises
+    ------
+    LimitError
+        When there is no such profile; while iterating also as :func:`trochia.toolpath.build`.
+    """
+
+    def __init__(self, blocks: Iterable[Program], machine: Machine, *, profile: str | None = None) -> None:
+        self.rules = Rules.of(machine, profile)
+        stretches = pave(blocks, machine, continuity=self.rules.profile.continuity)
+        self.road = Road("".join(axis.name for axis in machine.axes), stretches)
+
+    def __iter__(self) -> Iterator[Portion]:
+        """Yield portions without a gap from t = 0 to the program's end."""
+        ahead = Lookahead(self.road, self.rules, Place(0, 0.0), 0.0, Speeds())
+        given = 0
+        while True:
+            if ahead.safe > given:
+                yield Portion.of(self.road, ahead.phases[given : ahead.safe])
+                given = ahead.safe
+            given -= ahead.forget(ahead.safe_time)
+            if not ahead.extend():
+                break
+        if ahead.safe > given:
+            yield Portion.of(self.road, ahead.phases[given:])
