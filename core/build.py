@@ -31,6 +31,7 @@ HEADERS = [
     "host/placement.h",
     "host/twin.h",
     "host/stepper.h",
+    "host/drive.h",
     "host/contour.h",
 ]
 FLAGS = ["-std=c11", "-O3", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-ffp-contract=off", "-fno-math-errno"]

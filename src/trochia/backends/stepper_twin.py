@@ -39,6 +39,8 @@ class StepperRun:
         Electrical angle of the field before the rotor [rad].
     lost_steps
         Full steps the rotor has lost: a multiple of four; what it stands at once at rest is what the job lost.
+    load_theta
+        Angle of the load [rad], which an elastic coupling lets differ; None where the twin has none.
     """
 
     time: NDArray[np.float64]
@@ -48,6 +50,7 @@ class StepperRun:
     position: NDArray[np.int64]
     load_angle: NDArray[np.float64]
     lost_steps: NDArray[np.int64]
+    load_theta: NDArray[np.float64] | None = None
 
 
 class StepperTwin:
