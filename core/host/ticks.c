@@ -26,7 +26,7 @@ int64_t trochia_segment_intervals(trochia_segment_run *run, const trochia_tick_s
     int64_t made = 0;
     for (int64_t i = 0; i < count; i++) {
         trochia_segment_load(run, &segments[i]);
-        while (run->left && made < capacity)
+        while (run->phase && made < capacity)
             intervals[made++] = trochia_segment_step(run);
     }
     return made;

@@ -33,19 +33,20 @@ typedef struct {
     uint8_t flags;
 } trochia_tick_segment;
 
-/* As it is executed: every figure with its 24 fraction bits, the upper 32 apart from the lower 16. */
+/* As it is executed: every figure with its 24 fraction bits, the upper 32 apart from the lower 16.  A step touches the
+ * first six bytes only, and the others after every stride. */
 typedef struct {
     uint32_t interval;
+    uint8_t fraction; /* of a tick, carried [2^-8] */
+    uint8_t phase;    /* steps still to make at this interval; 0: the segment is done */
+    uint8_t stride;
+    uint8_t flags;
+    uint16_t left; /* steps to make after those */
+    uint16_t interval_low;
     uint32_t add;
     uint32_t add2;
-    uint16_t interval_low;
     uint16_t add_low;
     uint16_t add2_low;
-    uint16_t left; /* steps still to make */
-    uint8_t phase; /* steps until `add` acts */
-    uint8_t stride;
-    uint8_t fraction; /* of a tick, carried [2^-8] */
-    uint8_t flags;
 } trochia_segment_run;
 
 /* v times 2^(8 scale) in 24 fraction bits, upper 32 bits. */
@@ -62,6 +63,14 @@ static inline uint16_t trochia_segment_low(int32_t v, uint8_t scale) {
     return scale == 1 ? (uint16_t)((uint32_t)v << 8) : 0;
 }
 
+/* The steps of the next interval, out of those left. */
+static inline void trochia_segment_share(trochia_segment_run *run) {
+    run->phase = run->stride;
+    if (run->left < run->stride)
+        run->phase = (uint8_t)run->left;
+    run->left = (uint16_t)(run->left - run->phase);
+}
+
 /* Takes up a segment; the fraction of a tick stays. */
 static inline void trochia_segment_load(trochia_segment_run *run, const trochia_tick_segment *segment) {
     uint8_t scale = (uint8_t)((segment->flags & TROCHIA_SEGMENT_SCALE_MASK) / TROCHIA_SEGMENT_SCALE);
@@ -72,11 +81,12 @@ static inline void trochia_segment_load(trochia_segment_run *run, const trochia_
     run->add2 = trochia_segment_high(segment->add2, scale);
     run->add2_low = trochia_segment_low(segment->add2, scale);
     run->left = segment->count;
-    run->phase = run->stride = segment->stride;
+    run->stride = segment->stride;
     run->flags = segment->flags;
+    trochia_segment_share(run);
 }
 
-/* The next interval and the next `add`. */
+/* After a stride: the next interval and the next `add`. */
 static inline void trochia_segment_bend(trochia_segment_run *run) {
     uint16_t low = (uint16_t)(run->interval_low + run->add_low);
     run->interval += run->add + (low < run->add_low);
@@ -84,15 +94,14 @@ static inline void trochia_segment_bend(trochia_segment_run *run) {
     low = (uint16_t)(run->add_low + run->add2_low);
     run->add += run->add2 + (low < run->add2_low);
     run->add_low = low;
-    run->phase = run->stride;
+    trochia_segment_share(run);
 }
 
-/* Ticks from the step before to the next one, which counts as made; only while `left`. */
+/* Ticks from the step before to the next one, which counts as made; only while `phase` is not 0. */
 static inline uint32_t trochia_segment_step(trochia_segment_run *run) {
     uint16_t fraction = (uint16_t)(run->fraction + (uint8_t)run->interval);
     uint32_t ticks = (run->interval >> 8) + (fraction >> 8);
     run->fraction = (uint8_t)fraction;
-    run->left--;
     if (--run->phase == 0)
         trochia_segment_bend(run);
     return ticks;

@@ -9,6 +9,8 @@
  *   A channel(8) pad(8) mV(16)     an analogue input's voltage
  *   M address(16) count(16)        answer: bytes of data memory
  *   W address(16) bytes            sets data memory
+ *   I                              answer: for each interrupt vector how often it was taken, and the cycles from
+ *                                  entry to the end of its reti, all in all and at worst, without what nested in it
  *   Q                              ends
  *
  * libsimavr 1.6 takes interrupts in no time; the chip needs 4 cycles, and 4 more to wake. */
@@ -23,7 +25,7 @@
 #include <simavr/sim_core.h>
 #include <simavr/sim_elf.h>
 
-enum { ENTRY = 4, WAKE = 4, LONGEST = 1 << 24, PORTS = 12 };
+enum { ENTRY = 4, WAKE = 4, RETI = 4, LONGEST = 1 << 24, PORTS = 12, VECTORS = 64 };
 
 typedef struct {
     uint64_t cycle;
@@ -33,6 +35,15 @@ typedef struct {
     uint32_t unread;     /* bytes that have not arrived yet */
     uint32_t events;
 } status;
+
+typedef struct {
+    uint64_t taken, cycles, worst;
+} vector_cost;
+
+typedef struct {
+    uint8_t vector;
+    uint64_t since, nested; /* cycle of entry; cycles of others inside */
+} running;
 
 typedef struct {
     uint8_t port, pin, level;
@@ -46,6 +57,9 @@ static pin_watch pins[PORTS][8];
 static event *events;
 static uint32_t event_count, event_room;
 static status now;
+static vector_cost costs[VECTORS];
+static running stack[VECTORS];
+static int depth;
 
 void record(uint64_t cycle, uint8_t kind, uint8_t unit, uint8_t line, uint32_t value) {
     if (event_count == event_room) {
@@ -90,15 +104,35 @@ static void take_units(void) {
     }
 }
 
+/* A reti begins. */
+static void interrupt_ends(avr_irq_t *irq, uint32_t value, void *param) {
+    (void)irq, (void)value, (void)param;
+    if (!depth || chip->interrupts.running_ptr >= depth)
+        return;
+    const running *done = &stack[--depth];
+    uint64_t whole = chip->cycle + RETI - done->since, own = whole - done->nested;
+    vector_cost *cost = &costs[done->vector];
+    cost->taken++;
+    cost->cycles += own;
+    cost->worst = own > cost->worst ? own : cost->worst;
+    if (depth)
+        stack[depth - 1].nested += whole;
+}
+
 /* Takes a pending interrupt and charges what it costs. */
 static void service(bool woke) {
     uint8_t enabled = chip->sreg[S_I];
+    uint64_t since = chip->cycle;
     avr_service_interrupts(chip);
-    if (enabled && !chip->sreg[S_I]) {
-        chip->cycle += ENTRY + (woke ? WAKE : 0);
-        now.interrupts++;
-        avr_cycle_timer_process(chip);
-    }
+    if (!enabled || chip->sreg[S_I])
+        return;
+    chip->cycle += ENTRY + (woke ? WAKE : 0);
+    now.interrupts++;
+    if (depth < VECTORS)
+        stack[depth++] = (running){.vector = (uint8_t)(chip->pc / chip->vector_size % VECTORS), .since = since};
+    avr_flashaddr_t pc = chip->pc;
+    avr_cycle_timer_process(chip);
+    chip->pc = pc;
 }
 
 static avr_cycle_count_t stop_here(avr_t *avr, avr_cycle_count_t when, void *param) {
@@ -183,6 +217,9 @@ static bool obey(uint8_t letter, const uint8_t *request, uint32_t size) {
     case 'M':
         answer(chip->data + words[0], words[0] + words[1] > chip->ramend + 1 ? 0 : words[1]);
         return true;
+    case 'I':
+        answer(costs, sizeof costs);
+        return true;
     case 'B':
         serial_feed(&serial0, request + 8, size - 8, cycle);
         break;
@@ -239,6 +276,7 @@ int main(int count, char **arguments) {
     avr_load_firmware(chip, &image);
     watch_pins();
     take_units();
+    avr_irq_register_notify(avr_get_interrupt_irq(chip, AVR_INT_ANY) + AVR_INT_IRQ_RUNNING, interrupt_ends, NULL);
     while (listen())
         ;
     return 0;

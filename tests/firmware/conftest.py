@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 ROOT = Path(__file__).resolve().parents[2]
 FIRMWARE = ROOT / "firmware"
+PARTS = {"stepping": "step_isr.S"}  # what an image takes from the firmware beside the shared headers
 
 
 def _make(folder: Path, *arguments: str) -> None:
@@ -45,7 +46,7 @@ def image() -> Callable[[str], Path]:
 
     def build(name: str) -> Path:
         images = Path(__file__).with_name("images")
-        _make(FIRMWARE / "avr", f"FROM={images}", f"../../build/avr/{name}.elf")
+        _make(FIRMWARE / "avr", f"FROM={images}", f"WITH={PARTS.get(name, '')}", f"../../build/avr/{name}.elf")
         return ROOT / "build" / "avr" / f"{name}.elf"
 
     return build

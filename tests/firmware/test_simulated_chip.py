@@ -92,3 +92,9 @@ def test_a_chip_that_is_gone_is_named(start: Callable[[str], SimulatedChip]):
     chip.close()
     with pytest.raises(LinkError, match="stopped answering"):
         chip.run_until(1)
+
+
+def test_cycles_of_an_interrupt(counted: tuple[SimulatedChip, ChipRun]):
+    costs = counted[0].interrupts()
+    assert costs[11] == (1, 15, 15)  # TIMER1_COMPA: entry 4, jump 3, sbi 2, cbi 2, reti 4
+    assert costs[12] == (1, 19, 19)  # TIMER1_COMPB wakes the chip: 4 more

@@ -58,7 +58,7 @@ static void run_segments(void) {
     run = (trochia_segment_run){0};
     for (uint8_t i = 0; i < row_count; i++) {
         trochia_segment_load(&run, &rows[i]);
-        while (run.left) {
+        while (run.phase) {
             up();
             uint32_t interval = trochia_segment_step(&run);
             down();
