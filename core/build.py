@@ -32,6 +32,7 @@ HEADERS = [
     "host/twin.h",
     "host/stepper.h",
     "host/drive.h",
+    "host/servo.h",
     "host/contour.h",
 ]
 FLAGS = ["-std=c11", "-O3", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-ffp-contract=off", "-fno-math-errno"]

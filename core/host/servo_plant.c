@@ -1,0 +1,111 @@
+/* Motor, drive train, load. */
+#include "host/servo_plant.h"
+
+#include <math.h>
+#include <stddef.h>
+
+static double between(double x, double most) {
+    return x > most ? most : x < -most ? -most : x;
+}
+
+trochia_plant_constants trochia_plant_prepare(const trochia_plant *p) {
+    trochia_plant_constants k = {.half = 0.5 * p->gap, .rigid = p->stiffness == 0.0};
+    const double tau = p->mode == TROCHIA_VOLTAGE ? p->inductance / p->resistance : p->lag;
+    k.keep = tau > 0.0 ? exp(-p->h / tau) : 0.0;
+    k.gather = 1.0 - k.keep;
+    const double both = p->motor_inertia + p->load_inertia;
+    k.per_motor = 1.0 / (k.rigid ? both : p->motor_inertia);
+    k.per_load = k.rigid ? k.per_motor : 1.0 / p->load_inertia;
+    k.dry_motor = p->motor_friction.coulomb > 0.0 || p->motor_friction.stick > 0.0;
+    k.dry_load = p->load_friction.coulomb > 0.0 || p->load_friction.stick > 0.0;
+    k.sticky_motor = p->motor_friction.stick != p->motor_friction.coulomb && p->motor_friction.stribeck > 0.0;
+    k.sticky_load = p->load_friction.stick != p->load_friction.coulomb && p->load_friction.stribeck > 0.0;
+    return k;
+}
+
+static double friction(const trochia_friction *f, int dry, int sticky, double w) {
+    double force = f->viscous * w + f->offset;
+    if (dry) {
+        double level = f->coulomb;
+        if (sticky) {
+            const double x = w / f->stribeck;
+            level += (f->stick - f->coulomb) * exp(-x * x);
+        }
+        force += level * tanh(w / f->smooth);
+    }
+    return force;
+}
+
+/* Current after a step, and the torque it gives over it (from the mean current). */
+static double torque(const trochia_plant *p, const trochia_plant_constants *k, trochia_plant_state *s, double command,
+                     double w) {
+    const double before = s->current;
+    double target = p->gain * command;
+    if (p->mode == TROCHIA_VOLTAGE) {
+        double v = between(target, p->most_voltage);
+        if (p->quantum > 0.0)
+            v = p->quantum * floor(v / p->quantum + 0.5);
+        if (p->drop > 0.0) {
+            /* the bridge takes its drop from whatever drives the current, never more than there is */
+            const double inner = v - p->emf_constant * w;
+            v -= inner > p->drop ? p->drop : inner < -p->drop ? -p->drop : inner;
+        }
+        target = (v - p->emf_constant * w) / p->resistance;
+    }
+    s->current = between(k->keep * before + k->gather * target, p->most_current);
+    return p->torque_constant * 0.5 * (k->keep > 0.0 ? before + s->current : 2.0 * s->current);
+}
+
+static double coupling(const trochia_plant *p, const trochia_plant_constants *k, double twist, double slide) {
+    if (twist > k->half)
+        return p->stiffness * (twist - k->half) + p->damping * slide;
+    if (twist < -k->half)
+        return p->stiffness * (twist + k->half) + p->damping * slide;
+    return k->half > 0.0 ? 0.0 : p->stiffness * twist + p->damping * slide;
+}
+
+void trochia_plant_step(const trochia_plant *p, const trochia_plant_constants *k, trochia_plant_state *s,
+                        double command, double disturbance) {
+    const double h = p->h, half = 0.5 * h;
+    const double w = s->motor_speed + half * s->motor_force, z = s->load_speed + half * s->load_force;
+    const double drive = torque(p, k, s, command, w) - friction(&p->motor_friction, k->dry_motor, k->sticky_motor, w);
+    const double against = friction(&p->load_friction, k->dry_load, k->sticky_load, z) + p->load + disturbance;
+    if (k->rigid) {
+        const double a = (drive - against) * k->per_motor, v = s->motor_speed;
+        s->motor_speed = v + h * a;
+        s->motor += half * (v + s->motor_speed);
+        s->motor_force = s->load_force = a;
+        s->load = s->motor;
+        s->load_speed = s->motor_speed;
+        return;
+    }
+    const double x = s->motor + half * s->motor_speed, y = s->load + half * s->load_speed;
+    const double c = coupling(p, k, x - y, w - z);
+    s->motor_force = (drive - c) * k->per_motor;
+    s->load_force = (c - against) * k->per_load;
+    s->motor_speed += h * s->motor_force;
+    s->load_speed += h * s->load_force;
+    s->motor = x + half * s->motor_speed;
+    s->load = y + half * s->load_speed;
+}
+
+double trochia_plant_measured(const trochia_plant *p, const trochia_plant_state *s) {
+    const double x = p->on_load ? s->load : s->motor;
+    return p->counts > 0.0 ? floor(x * p->counts) / p->counts : x;
+}
+
+void trochia_plant_run(const trochia_plant *plant, trochia_plant_state *state, const double *commands, uint64_t count,
+                       uint32_t steps, double *out) {
+    const trochia_plant_constants k = trochia_plant_prepare(plant);
+    trochia_plant_state s = *state;
+    for (uint64_t i = 0; i < count; i++, out += 7) {
+        const double speed = plant->on_load ? s.load_speed : s.motor_speed;
+        const double row[7] = {trochia_plant_measured(plant, &s), s.motor, s.load, speed, commands[i], s.current,
+                               plant->torque_constant * s.current};
+        for (int c = 0; c < 7; c++)
+            out[c] = row[c];
+        for (uint32_t n = 0; n < steps; n++)
+            trochia_plant_step(plant, &k, &s, commands[i], 0.0);
+    }
+    *state = s;
+}

@@ -1,0 +1,24 @@
+/* One time step of the plant.  Internal to servo*.c, not part of the schema. */
+#ifndef TROCHIA_SERVO_PLANT_H
+#define TROCHIA_SERVO_PLANT_H
+
+#include "host/servo.h"
+
+/* What does not change from step to step. */
+typedef struct {
+    double keep, gather; /* of the current over a step; VOLTAGE without inductance: keep 0 */
+    double per_motor, per_load;
+    double half; /* of the gap */
+    int rigid, dry_motor, dry_load, sticky_motor, sticky_load;
+} trochia_plant_constants;
+
+trochia_plant_constants trochia_plant_prepare(const trochia_plant *plant);
+
+/* One step under a command (the amplifier's input) and a force on the load besides the plant's own. */
+void trochia_plant_step(const trochia_plant *plant, const trochia_plant_constants *k, trochia_plant_state *s,
+                        double command, double disturbance);
+
+/* What the encoder says. */
+double trochia_plant_measured(const trochia_plant *plant, const trochia_plant_state *s);
+
+#endif
