@@ -129,6 +129,8 @@ class Joint:
         Lost motion on reversal [mm or degree].
     velocity, acceleration, jerk
         Limits of the joint itself, beside those of the axes [mm/s, mm/s², mm/s³, or degrees].
+    following_error, following_warning
+        Lag behind the command that stops the machine, and that is told only [mm or degree].
     pulse_rate
         Greatest step rate of its driver [1/s].
     """
@@ -148,6 +150,13 @@ class Joint:
     )
     jerk: float | None = field(
         default=None, metadata=key(Quantity("jerk", motion=True), "limit of the joint itself", Bound.POSITIVE)
+    )
+    following_error: float | None = field(
+        default=None,
+        metadata=key(Quantity("length", motion=True), "lag behind its command at which it is stopped", Bound.POSITIVE),
+    )
+    following_warning: float | None = field(
+        default=None, metadata=key(Quantity("length", motion=True), "lag that is told", Bound.POSITIVE)
     )
     pulse_rate: float | None = field(
         default=None, metadata=key(Quantity("frequency"), "greatest step rate of the driver", Bound.POSITIVE)
