@@ -8,6 +8,7 @@ from enum import Enum
 from trochia.errors import ConfigError
 from trochia.machine.acceleration import AccelerationCurve, CurveOfAcceleration
 from trochia.machine.codecs import Quantity, Text
+from trochia.machine.homing import Homing, LimitSwitch
 from trochia.machine.resonance import Resonance
 from trochia.machine.schema import Bound, Record, check_bounds, key
 
@@ -59,6 +60,13 @@ class Axis:
     )
     resonance: Resonance | None = field(
         default=None, metadata=key(Record(Resonance), "how the axis swings, and the shaper that cancels it")
+    )
+    home: Homing | None = field(default=None, metadata=key(Record(Homing), "how the axis finds its reference"))
+    limit_minus: LimitSwitch | None = field(
+        default=None, metadata=key(Record(LimitSwitch), "the switch at its lower end")
+    )
+    limit_plus: LimitSwitch | None = field(
+        default=None, metadata=key(Record(LimitSwitch), "the switch at its upper end")
     )
 
     def __post_init__(self) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 from trochia.errors import ConfigError
 from trochia.machine.axes import LETTERS, AxisKind
 from trochia.machine.rates import joint_velocity, step_rate
+from trochia.units import did_you_mean
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -37,6 +38,7 @@ def check(machine: Machine) -> None:
             if axis.jerk is None:
                 raise ConfigError("missing: the profile s-curve needs it", key=f"axes.{axis.name}.jerk")
     _check_pins(machine)
+    _check_switches(machine)
 
 
 def _check_names(machine: Machine) -> None:
@@ -129,3 +131,33 @@ def _check_pins(machine: Machine) -> None:
             raise ConfigError(f"pin {channel.pin} is already that of io.{owners[channel.pin]}",
                               key=f"io.{channel.name}.pin")  # fmt: skip
         owners[channel.pin] = channel.name
+
+
+def _check_switches(machine: Machine) -> None:
+    """Refuse switches that are no inputs of the machine, and ways home that lack what they need."""
+    inputs = [channel.name for channel in machine.io if channel.kind == "input"]
+    for axis in machine.axes:
+        ends = {"limit_minus": axis.limit_minus, "limit_plus": axis.limit_plus}
+        named = {f"{end}.input": switch.input for end, switch in ends.items() if switch is not None}
+        home = axis.home
+        if home is not None:
+            if home.input is not None:
+                named["home.input"] = home.input
+            elif home.method.startswith("switch"):
+                raise ConfigError(f"missing: the method {home.method} needs it", key=f"axes.{axis.name}.home.input")
+            end = "limit_minus" if home.towards == "-" else "limit_plus"
+            if home.method == "limit" and ends[end] is None:
+                raise ConfigError("missing: the axis is homed to it", key=f"axes.{axis.name}.{end}")
+            if home.method.endswith("index") and not _has_index(machine, axis.name):
+                raise ConfigError("needs a joint whose encoder gives an index", key=f"axes.{axis.name}.home.method")
+        for key, name in named.items():
+            if name not in inputs:
+                raise ConfigError(f"there is no input {name!r} under [io]", key=f"axes.{axis.name}.{key}",
+                                  hint=did_you_mean(name, inputs))  # fmt: skip
+
+
+def _has_index(machine: Machine, axis: str) -> bool:
+    """Return whether a joint that moves with the axis gives an index pulse."""
+    column = machine.kinematics.matrix[:, [a.name for a in machine.axes].index(axis)]
+    return any(joint.encoder is not None and joint.encoder.index
+               for joint, part in zip(machine.joints, column, strict=True) if part)  # fmt: skip

@@ -12,6 +12,7 @@ from trochia.machine.acceleration import CurveOfAcceleration
 from trochia.machine.axes import Axis, PathLimits
 from trochia.machine.codecs import Exact, Flag, Number, Quantity, Ratio, Text, Whole
 from trochia.machine.drivers import DRIVERS
+from trochia.machine.homing import METHODS, Homing, LimitSwitch
 from trochia.machine.io import CHANNELS, ELECTRICAL, Beam, Channel, Spindle
 from trochia.machine.joints import MOTORS, Encoder, Joint, PulseTiming
 from trochia.machine.kinematics import KINEMATICS
@@ -24,7 +25,8 @@ from trochia.machine.transmissions import TRANSMISSIONS
 
 PAGE = Path(__file__).parents[3] / "docs" / "reference" / "machine-file.md"
 TABLES = {
-    "Top of the file": Machine, "path": PathLimits, "axes.X": Axis, "resonance": Resonance, "joints.X": Joint, "encoder": Encoder,
+    "Top of the file": Machine, "path": PathLimits, "axes.X": Axis, "resonance": Resonance,
+    "home": Homing, "limit_minus and limit_plus": LimitSwitch, "joints.X": Joint, "encoder": Encoder,
     "pulses": PulseTiming, "spindle": Spindle, "beam": Beam, "io.NAME": Channel,
     "catalogue": CatalogueStepper, "load": JointLoad,
 } | {f"motor, kind {kind}": cls for kind, cls in MOTORS.items()} | {
@@ -86,6 +88,8 @@ def test_every_kind_is_named():
     for name, (_, meaning) in ELECTRICAL.items():
         assert f"| `{name}` | {meaning} |" in text
     for name, meaning in CHANNELS.items():
+        assert f"| `{name}` | {meaning} |" in text
+    for name, meaning in METHODS.items():
         assert f"| `{name}` | {meaning} |" in text
     for name in KINEMATICS:
         assert f"| `{name}` |" in text
