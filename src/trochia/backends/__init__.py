@@ -1,8 +1,22 @@
 """Who moves the machine; a row in ``BACKENDS`` is what makes a backend known and tested."""
 
-from trochia.backends.protocol import Motion, SegmentBackend
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from trochia.backends.live_twin import LiveTwin
+from trochia.backends.protocol import Motion, MotionBackend
 from trochia.backends.twin import Twin
 
-BACKENDS: dict[str, type[SegmentBackend]] = {backend.kind: backend for backend in (Twin,)}
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
-__all__ = ["BACKENDS", "Motion", "SegmentBackend", "Twin"]
+    from trochia.backends.live import SegmentBackend
+    from trochia.machine.machine import Machine
+
+#: they carry out a whole motion in virtual time
+BACKENDS: dict[str, type[MotionBackend]] = {backend.kind: backend for backend in (Twin,)}
+#: they take segments as the controller plans them
+LIVE_BACKENDS: dict[str, Callable[[Machine], SegmentBackend]] = {backend.kind: backend for backend in (LiveTwin,)}
+
+__all__ = ["BACKENDS", "LIVE_BACKENDS", "LiveTwin", "Motion", "MotionBackend", "Twin"]

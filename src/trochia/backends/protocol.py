@@ -1,6 +1,6 @@
 """What moves the machine: the seam between a planned motion and whoever carries it out.
 
-A segment backend takes a motion that is planned already and gives back what came of it, in blocks of samples as they
+A motion backend takes a motion that is planned already and gives back what came of it, in blocks of samples as they
 come; :func:`trochia.recorder.write` puts them into a file, :func:`trochia.recorder.gather` into memory.
 """
 
@@ -43,7 +43,7 @@ class Motion(Protocol):
         ...
 
 
-class SegmentBackend(Protocol):
+class MotionBackend(Protocol):
     """Carries out a motion on one machine and records it.
 
     Every recording has ``X.commanded`` and ``X.actual`` for each axis and covers the whole duration, both ends in it.

@@ -1,0 +1,211 @@
+"""The digital twin as a live backend: the machine that is there when no machine is there, run by a clock it is told.
+
+In: orders.  Out: reports.  It goes from servo tick to servo tick up to the time it is asked about; with a virtual clock
+or a real one it does the same.  Switches are where the machine really is, whatever the controller believes.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from trochia.backends.executor import Executor
+from trochia.backends.live import Orders, Report, Trouble
+from trochia.backends.plant import IdealPlant
+from trochia.errors import LocalProtocolError
+from trochia.messages import Cause
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from numpy.typing import NDArray
+
+    from trochia.backends.executor import Told
+    from trochia.backends.live import Watch
+    from trochia.machine.machine import Machine
+
+    Switch = Callable[[NDArray[np.float64]], bool]
+
+
+class LiveTwin:
+    """One machine, live.
+
+    Parameters
+    ----------
+    position
+        Where the joints really are at power-up (joints,) [mm or degree]; all at 0 where None.
+    switches
+        Inputs by name: whether each is active, from the joints' real positions (joints,).
+    ahead
+        How much motion it wants to hold [s].
+
+    Attributes
+    ----------
+    inputs
+        Levels of inputs that are no switches; a test or a person sets them.
+    faulty
+        Joints whose drive reports a fault.
+    """
+
+    kind: ClassVar[str] = "twin"
+
+    def __init__(
+        self,
+        machine: Machine,
+        *,
+        position: NDArray[np.float64] | None = None,
+        switches: Mapping[str, Switch] | None = None,
+        ahead: float = 0.2,
+    ) -> None:
+        joints = len(machine.joints)
+        real = np.zeros(joints) if position is None else position.astype(np.float64)
+        self.machine = machine
+        self.latency = machine.servo_period
+        self.ahead = ahead
+        self.plant = IdealPlant(machine, real)
+        self.inputs = {channel.name: False for channel in machine.io if channel.kind == "input"}
+        self.outputs = {channel.name: 0.0 for channel in machine.io if not channel.kind.endswith("input")}
+        self.faulty: set[str] = set()
+        self._switches = dict(switches or {})
+        self._names = [joint.name for joint in machine.joints]
+        self._offset = -real  # what the controller calls a position, less where it really is
+        self._executor = Executor(np.zeros(joints), machine.servo_period)
+        self._now = 0.0
+        self._enabled = self._lit = False
+        self._beam, self._line = 0.0, 0
+        self._velocity = np.zeros(joints)
+        self._timed: list[tuple[float, str, float]] = []
+        self._watch: tuple[Watch, ...] = ()
+        self._caught: tuple[str, NDArray[np.float64]] | None = None
+        self._troubles: list[Trouble] = []
+
+    def open(self, now: float) -> Report:
+        """Begin at this time; nothing moves, drives are off."""
+        self._now = now
+        return self.poll(now)
+
+    def close(self) -> None:
+        """Stop, drives off."""
+        self._halt()
+        self._enabled = False
+
+    def poll(self, now: float) -> Report:
+        """Run up to ``now`` and report."""
+        ticks = int((now - self._now) / self.machine.servo_period + 1e-6)
+        while ticks > 0:
+            ticks -= self._run(ticks)
+        self._look_at_drives()
+        executor = self._executor
+        executor.queue.forget(executor.executed)
+        troubles = tuple(self._troubles)
+        self._troubles.clear()
+        return Report(
+            time=self._now, executed=executor.executed, rate=executor.rate if executor.moving else 0.0,
+            queued=max(executor.queue.end - executor.executed, 0.0), commanded=executor.commanded,
+            velocity=self._velocity, encoder=self.plant.encoder() + self._offset,
+            actual=self.plant.load + self._offset, enabled=self._enabled, beam=self._beam, line=self._line,
+            inputs=self._read(), outputs=dict(self.outputs), troubles=troubles, caught=self._caught,
+        )  # fmt: skip
+
+    def order(self, orders: Orders, now: float) -> None:  # noqa: ARG002 - the clock is told by poll
+        """Take orders; see :class:`trochia.backends.live.SegmentBackend`."""
+        if orders.stop or orders.enable is False:
+            self._halt()
+        self._enabled = self._enabled if orders.enable is None else orders.enable
+        self._set_outputs(orders)
+        if orders.lit is not None:
+            self._lit = orders.lit
+            self._beam = self._beam if orders.lit else 0.0
+        if orders.watch is not None:
+            self._watch, self._caught = orders.watch, None
+        if orders.place:
+            self._place(orders.place)
+        if orders.segments is not None:
+            if not self._enabled:
+                raise LocalProtocolError("segments for drives that are off")
+            self._executor.add(orders.segments, orders.at)
+
+    def _set_outputs(self, orders: Orders) -> None:
+        for name in (*orders.outputs, *(name for _, name, _ in orders.timed)):
+            if name not in self.outputs:
+                raise LocalProtocolError(f"there is no output {name!r}", hint=f"There are: {', '.join(self.outputs)}")
+        self.outputs |= orders.outputs
+        if orders.segments is not None:
+            self._timed = [entry for entry in self._timed if entry[0] < orders.at]
+        self._timed = sorted([*self._timed, *orders.timed])
+
+    def _read(self) -> dict[str, bool]:
+        return self.inputs | {name: switch(self.plant.load) for name, switch in self._switches.items()}
+
+    def _place(self, names: Mapping[str, float]) -> None:
+        """Call the joints' present positions by other numbers."""
+        if self._executor.moving:
+            raise LocalProtocolError("positions are named at rest only")
+        commanded = self._executor.commanded
+        for name, value in names.items():
+            i = self._names.index(name)
+            self._offset[i] += value - commanded[i]
+            commanded[i] = value
+        self._executor.queue.clear(commanded, self._executor.executed)
+
+    def _halt(self) -> None:
+        """Stand still at once: what is queued is gone."""
+        self._executor.halt()
+        self._rest()
+        self._timed.clear()
+
+    def _rest(self) -> None:
+        self._velocity = np.zeros(len(self._names))
+        self._beam = 0.0
+
+    def _run(self, ticks: int) -> int:
+        """Run through up to so many servo ticks, and return how many."""
+        if not self._executor.moving:
+            self._now += ticks * self.machine.servo_period
+            self._rest()
+            self._outputs_due()
+            return ticks
+        told = self._executor.run(ticks, one=bool(self._watch))
+        self.plant.follow(told.commanded - self._offset)
+        self._now += told.ticks * self.machine.servo_period
+        self._velocity, self._line = told.velocity, told.line
+        self._light(told)
+        self._outputs_due()
+        self._look_at_inputs()
+        self._look_at_joints()
+        return told.ticks
+
+    def _light(self, told: Told) -> None:
+        """Light the beam at full rate only: whoever slows it down has stopped it."""
+        lit = self._lit and not self._executor.braking and self._executor.rate >= 1.0
+        self._beam = told.power if lit and bool(told.velocity.any()) else 0.0
+
+    def _outputs_due(self) -> None:
+        while self._timed and self._timed[0][0] <= self._executor.executed + 1e-9:
+            _, name, value = self._timed.pop(0)
+            self.outputs[name] = value
+
+    def _look_at_inputs(self) -> None:
+        """Brake at an input that is watched."""
+        levels = self._read() if self._watch else {}
+        for watch in self._watch:
+            if levels.get(watch.name) == watch.level:
+                self._caught = (watch.name, self._executor.commanded)
+                self._watch, self._executor.braking, self._beam = (), True, 0.0
+                return
+
+    def _look_at_joints(self) -> None:
+        """Stop at once where a load lags too far."""
+        error = np.abs(self._executor.commanded - self._offset - self.plant.load)
+        for joint, lag in zip(self.machine.joints, error, strict=True):
+            if joint.following_error is not None and lag > joint.following_error:
+                self._troubles.append(
+                    Trouble(cause=Cause.FOLLOWING, joint=joint.name, value=float(lag), limit=joint.following_error)
+                )
+                self._halt()
+
+    def _look_at_drives(self) -> None:
+        for name in sorted(self.faulty):
+            self._troubles.append(Trouble(cause=Cause.DRIVE, joint=name))
+            self._halt()
