@@ -1,4 +1,4 @@
-"""What every live backend does with orders: the same motion for the same segments, the same refusals of the same abuse."""
+"""What every live backend does with orders: the same motion for the same segments, the same refusals of abuse."""
 
 from __future__ import annotations
 
