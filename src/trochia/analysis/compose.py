@@ -60,6 +60,11 @@ def report_data(verdict: Verdict, plan: Plan, recording: Recording, source: Sequ
     )
 
 
+def load_channel(joint: str) -> str:
+    """Return the channel of a joint's load angle."""
+    return f"joint.{joint}.load_angle"
+
+
 def _axis(plan: Plan, axis: Axis) -> AxisSummary:
     peaks = plan.trajectory.peaks[axis.name]
     low, high = plan.extents[axis.name]
@@ -117,6 +122,8 @@ def _samples(plan: Plan, recording: Recording) -> MotionSamples:
         return np.asarray(recording[name][::step][keep], dtype=np.float64)
 
     names = [axis.name for axis in plan.machine.axes]
+    rows = zip(plan.machine.joints, np.abs(plan.machine.kinematics.matrix), strict=True)
+    joints = tuple((joint.name, int(row.argmax())) for joint, row in rows if load_channel(joint.name) in recording)
     return MotionSamples(
         time=time,
         position=np.stack([channel(f"{name}.commanded") for name in names], axis=1),
@@ -126,4 +133,6 @@ def _samples(plan: Plan, recording: Recording) -> MotionSamples:
         line=channel("path.line").astype(np.int64),
         actual=np.stack([channel(f"{name}.actual") for name in names], axis=1),
         contour_error=contour_distances(recording)[::step][keep],
+        load_angle=np.stack([channel(load_channel(name)) for name, _ in joints], axis=1) if joints else None,
+        load_joints=joints,
     )

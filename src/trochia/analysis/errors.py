@@ -53,7 +53,8 @@ def contour_distances(recording: Recording, axes: Iterable[str] | None = None) -
 def lost_steps(recording: Recording, machine: Machine) -> dict[str, int]:
     """Return for every stepper joint how many whole steps its motor's last position is behind the last command.
 
-    A joint that stands on the last step passed is less than a step from its command and has lost none.
+    A joint that stands on the last step passed is less than a step from its command and has lost none.  A stepper that
+    was physics has lost what its rotor slipped: full steps, a multiple of four.
     """
     command = machine.kinematics.matrix @ [recording[f"{axis.name}.commanded"][-1] for axis in machine.axes]
     behind = {
@@ -61,7 +62,9 @@ def lost_steps(recording: Recording, machine: Machine) -> dict[str, int]:
         for joint, at in zip(machine.joints, command, strict=True)
         if joint.steps_per_unit is not None
     }
-    return {name: int(steps + math.copysign(SNAP, steps)) for name, steps in behind.items()}
+    lost = {name: int(steps + math.copysign(SNAP, steps)) for name, steps in behind.items()}
+    slipped = {name: f"joint.{name}.lost_steps" for name in lost}
+    return lost | {name: int(recording[at][-1]) for name, at in slipped.items() if at in recording}
 
 
 class _Following:

@@ -78,6 +78,10 @@ JOINT = (
     JointSignal("counts", lambda joint: joint.counts, "count", "<i8", lambda joint: joint.encoder is not None),
     JointSignal("actual", lambda joint: joint.load),
 )
+PHYSICAL = (
+    JointSignal("load_angle", lambda joint: joint.load_angle, "degree", of=lambda joint: joint.fed is not None),
+    JointSignal("lost_steps", lambda joint: joint.lost, "step", "<i8", lambda joint: joint.fed is not None),
+)
 PATH = (
     PathSignal("path.speed", lambda block: block.motion.path_speed(block.t), "mm/s"),
     PathSignal("path.line", lambda block: np.asarray(block.motion.line_at(block.t), np.uint32), dtype="<u4"),
@@ -85,15 +89,18 @@ PATH = (
 )
 
 
-def signals(machine: Machine) -> Iterator[tuple[Channel, Taker]]:
-    """Yield every channel of a machine's recordings and what takes its samples, in the order of the file."""
+def signals(machine: Machine, *, physical: bool = False) -> Iterator[tuple[Channel, Taker]]:
+    """Yield every channel of a machine's recordings and what takes its samples, in the order of the file.
+
+    ``physical`` adds those of steppers as physics.
+    """
     units = ["mm" if axis.kind is AxisKind.LINEAR else "degree" for axis in machine.axes]
     for signal in AXIS:
         for i, axis in enumerate(machine.axes):
             yield Channel(name=f"{axis.name}.{signal.quantity}", unit=units[i]), _column(signal, i)
     for i, (joint, row) in enumerate(zip(machine.joints, machine.kinematics.matrix, strict=True)):
         own = units[int(np.argmax(np.abs(row)))]
-        for signal in JOINT:
+        for signal in (*JOINT, *PHYSICAL) if physical else JOINT:
             if signal.of(joint):
                 unit = own if signal.unit is None else signal.unit
                 channel = Channel(name=f"joint.{joint.name}.{signal.quantity}", unit=unit, dtype=signal.dtype)

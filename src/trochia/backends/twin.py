@@ -1,4 +1,4 @@
-"""The digital twin, first level: ideal motors, transmissions with backlash, encoders, on a clock of its own.
+"""The digital twin: motors, transmissions with backlash, encoders, on a clock of its own.
 
 In: a motion and a machine.  Out: blocks of three independent signals, the commanded position, what the encoders count,
 and where the axes really are; ``signals.py`` has a row for each channel.
@@ -7,6 +7,8 @@ and where the axes really are; ``signals.py`` has a row for each channel.
 
 An ideal stepper stands on the last step passed, an ideal servo on the nearest count of its encoder (on the load as on
 the motor: no loop is closed here); neither is late or loses anything, so what is left is resolution and lost motion.
+A stepper whose file names motor, driver and load is physics, where the motion has step pulses: it lags, swings and
+loses steps (``physical.py``).
 """
 
 from __future__ import annotations
@@ -17,9 +19,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from trochia.backends.physical import PhysicalJoints
 from trochia.backends.signals import Sampled, signals
 from trochia.errors import ConfigError
 from trochia.kernels.twin import TwinJoint
+from trochia.pulses.steps import Motion as Stepped
 from trochia.recorder import Header
 
 if TYPE_CHECKING:
@@ -36,7 +40,7 @@ BLOCK = 65_536  #: samples at a time: a few MB, and some milliseconds of work a 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Twin:
-    """A machine of ideal joints.
+    """A machine.
 
     Attributes
     ----------
@@ -46,12 +50,15 @@ class Twin:
         Time between samples [s]; the machine's servo period where None.
     slack
         Where every load lies in its backlash at the start, -1 to 1: 0 centred, -1 as after moving forwards.
+    physical
+        Whether steppers are physics where the machine's file allows it; without it all joints are ideal.
     """
 
     kind: ClassVar[str] = "twin"
     machine: Machine
     period: float | None = None
     slack: float = 0.0
+    physical: bool = True
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.tick) and self.tick > 0):
@@ -71,8 +78,8 @@ class Twin:
             duration=motion.duration,
             machine=self.machine.name,
             program=program,
-            origin=f"twin of ideal joints, slack {self.slack:g}",
-            channels=tuple(channel for channel, _ in signals(self.machine)),
+            origin=f"twin of {'physical' if self._physical(motion) else 'ideal'} joints, slack {self.slack:g}",
+            channels=tuple(channel for channel, _ in signals(self.machine, physical=self._physical(motion))),
         )
 
     def run(self, motion: Motion) -> Iterator[Mapping[str, NDArray[Any]]]:
@@ -81,7 +88,8 @@ class Twin:
         inverse = np.linalg.pinv(matrix)
         start = motion.position(np.zeros(1))[0] @ matrix.T
         joints = [self._joint(joint, at) for joint, at in zip(self.machine.joints, start, strict=True)]
-        recorded = list(signals(self.machine))
+        recorded = list(signals(self.machine, physical=self._physical(motion)))
+        real = self._steppers(motion)
         # a millionth of a period: a duration is a sum, and rounding must not buy it one more sample
         samples = math.ceil(motion.duration / self.tick - 1e-6) + 1
         for first in range(0, samples, BLOCK):
@@ -90,10 +98,25 @@ class Twin:
                 t[-1] = motion.duration
             commanded = motion.position(t)
             wanted = commanded @ matrix.T
-            done = [joint.run(wanted[:, i]) for i, joint in enumerate(joints)]
+            if real is not None:
+                real.feed(float(t[-1]) + self.tick)
+            done = [
+                real.joints[i].run(t.size) if real is not None and i in real.joints else joint.run(wanted[:, i])
+                for i, joint in enumerate(joints)
+            ]
             actual = np.stack([block.load for block in done], axis=1) @ inverse.T
             block = Sampled(t=t, motion=motion, commanded=commanded, actual=actual, joints=done)
             yield {channel.name: take(block) for channel, take in recorded}
+
+    def _physical(self, motion: Motion) -> bool:
+        """Whether some joint is physics under this motion."""
+        return self.physical and isinstance(motion, Stepped) and any(j.fed is not None for j in self.machine.joints)
+
+    def _steppers(self, motion: Motion) -> PhysicalJoints | None:
+        """Return the physical joints, or None where there are none."""
+        if not self._physical(motion) or not isinstance(motion, Stepped):
+            return None
+        return PhysicalJoints.of(self.machine, motion, period=self.tick, slack=self.slack)
 
     def _joint(self, joint: Joint, command: float) -> TwinJoint:
         return TwinJoint(

@@ -25,12 +25,17 @@ LIMIT = 2**31  #: motor positions and terms of a gearing below this cannot overf
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TwinBlock:
-    """What a joint did over a block, each (samples,); integers where the joint counts them, else None."""
+    """What a joint did over a block, each (samples,); integers where the joint counts them, else None.
+
+    ``load_angle`` [electrical degree] and ``lost`` [full steps] are a physical stepper's.
+    """
 
     position: NDArray[np.int64] | None
     motor: NDArray[np.float64]
     counts: NDArray[np.int64] | None
     load: NDArray[np.float64]
+    load_angle: NDArray[np.float64] | None = None
+    lost: NDArray[np.int64] | None = None
 
 
 class TwinJoint:

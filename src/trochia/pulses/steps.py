@@ -11,7 +11,7 @@ at all.  Every time is found from the trajectory itself, not from the step befor
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -30,6 +30,7 @@ CLOCK = 16_000_000  #: ticks a second [Hz]: that of the smallest controller boar
 WINDOW = 0.1  #: longest block [s]: work enough a call, and a few hundred kB at a hundred thousand steps a second
 
 
+@runtime_checkable
 class Motion(Protocol):
     """What step timing asks of a trajectory."""
 

@@ -112,6 +112,10 @@ class MotionSamples:
         Position reached (m, k), or None without a simulation.
     contour_error
         Distance of the actual position from the programmed path (m,) [mm], or None.
+    load_angle
+        Of the steppers that were physics (m, q) [electrical degree], or None.
+    load_joints
+        Their names, and the number of the axis each moves most.
     """
 
     time: NDArray[np.float64]
@@ -122,10 +126,13 @@ class MotionSamples:
     line: NDArray[np.int64]
     actual: NDArray[np.float64] | None = None
     contour_error: NDArray[np.float64] | None = None
+    load_angle: NDArray[np.float64] | None = None
+    load_joints: tuple[tuple[str, int], ...] = ()
 
     def __post_init__(self) -> None:
         tables = {"position": self.position, "velocity": self.velocity, "acceleration": self.acceleration}
-        columns = {"speed": self.speed, "line": self.line, "actual": self.actual, "contour_error": self.contour_error}
+        columns = {"speed": self.speed, "line": self.line, "actual": self.actual, "contour_error": self.contour_error,
+                   "load_angle": self.load_angle}  # fmt: skip
         _rows(self.time.shape[0], **tables, **columns)
         if self.time.shape[0] and not bool(np.all(np.diff(self.time) > 0)):
             raise ValueError("time must rise from sample to sample")

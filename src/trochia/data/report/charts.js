@@ -10,6 +10,9 @@ const AXIS_QUANTITIES = [
 /** Errors below this are told in micrometres [mm]. */
 const SMALL_ERROR = 0.1;
 
+/** Load angle at which a stepper gives its most, and beyond which it falls out of step [electrical degree]. */
+const MOST_LOAD_ANGLE = 90;
+
 /** @param {ChartSpec} spec @returns {ChartSpec} in µm, if it is in mm and its values are small */
 function inMicrometres(spec) {
   const peak = spec.series.reduce((most, { values }) => values.reduce((a, b) => Math.max(a, Math.abs(b)), most), 0);
@@ -39,6 +42,10 @@ function chartSpecs(motion) {
   specs.push(...AXIS_QUANTITIES.flatMap(perAxis));
   if (channels.following) specs.push(...perAxis(["following", "Following error", "", 4, null]).map(inMicrometres));
   if (channels.contour) specs.push(inMicrometres(single("Contour error", "mm", 4, channels.contour, null, false)));
+  if (channels.load) {
+    const series = channels.load.map((joint) => ({ ...joint, limit: MOST_LOAD_ANGLE }));
+    specs.push({ title: "Load angle of the motors", unit: "° el.", digits: 1, oneSided: false, mapped: false, series });
+  }
   return specs;
 }
 
