@@ -33,6 +33,8 @@ HEADERS = [
     "host/stepper.h",
     "host/drive.h",
     "host/servo.h",
+    "shared/pid.h",
+    "host/integer_pid.h",
     "host/contour.h",
 ]
 FLAGS = ["-std=c11", "-O3", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-ffp-contract=off", "-fno-math-errno"]
