@@ -19,6 +19,7 @@ HEADERS = [
     "host/spline.h",
     "host/path.h",
     "host/plan.h",
+    "host/plan_torque.h",
     "host/scurve.h",
     "host/steps.h",
     "shared/interpolate.h",

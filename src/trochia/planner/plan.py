@@ -12,6 +12,7 @@ from trochia.planner.limits import Limits
 from trochia.planner.rests import rests_of
 from trochia.planner.s_curve import SCurveSchedule
 from trochia.planner.shaping import Shaping
+from trochia.planner.torque import TorqueSchedule
 from trochia.planner.trajectory import Trajectory
 from trochia.planner.trapezoid import TrapezoidSchedule
 
@@ -22,7 +23,11 @@ if TYPE_CHECKING:
     from trochia.toolpath import Toolpath
 
 #: every velocity profile by its name
-PROFILES: dict[str, Profile] = {"trapezoid": TrapezoidSchedule, "s-curve": SCurveSchedule}
+PROFILES: dict[str, Profile] = {
+    "trapezoid": TrapezoidSchedule,
+    "s-curve": SCurveSchedule,
+    "torque": TorqueSchedule,
+}
 
 
 def profile_of(machine: Machine, asked: str | None = None) -> str:
