@@ -1,0 +1,235 @@
+"""The step library's motor, under the names its users know.
+
+In: targets, speeds and accelerations in steps and seconds.  Out: step pulses, each when exact constant acceleration has
+it.  Targets and limits may change in motion; a target behind is reached by braking first.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from trochia.errors import LimitError
+from trochia.stepper.law import next_step
+
+if TYPE_CHECKING:
+    from trochia.stepper.outputs import StepOutput
+    from trochia.stepper.times import Time
+
+
+class Stepper:
+    """One motor at rest at position 0.
+
+    Positions are in steps, speeds in steps/s (positive is forwards), accelerations in steps/s².  As users of the step
+    library know it, speed and acceleration are limited to 1 until they are set.
+    """
+
+    def __init__(self, output: StepOutput, time: Time) -> None:
+        self.output = output
+        self.time = time
+        self._position = self._target = 0
+        self._speed = 0.0  # of run_speed
+        self._max_speed = self._acceleration = self._deceleration = 1.0
+        self._square, self._way = 0.0, 1  # squared speed after the last step, and which way it was
+        self._last = 0.0  # when it was
+        self._due: tuple[float, float] | None = None  # when the next is, and the squared speed after it
+        self._steady: float | None = None  # when the next of run_speed is
+        time.join(self._next_due)
+
+    # limits
+
+    def set_max_speed(self, speed: float) -> None:
+        """Limit the speed [steps/s] of ``run`` and what stands on it.
+
+        Raises
+        ------
+        LimitError
+            Unless it is above 0.
+        """
+        self._max_speed = _positive("maximum speed", speed, "steps/s")
+        self._change()
+
+    def max_speed(self) -> float:
+        """Return the greatest speed [steps/s]."""
+        return self._max_speed
+
+    def set_acceleration(self, acceleration: float, deceleration: float | None = None) -> None:
+        """Set the acceleration, and with it the deceleration unless that is given too [steps/s²].
+
+        Raises
+        ------
+        LimitError
+            Unless both are above 0.
+        """
+        self._acceleration = _positive("acceleration", acceleration, "steps/s²")
+        wanted = acceleration if deceleration is None else deceleration
+        self._deceleration = _positive("deceleration", wanted, "steps/s²")
+        self._change()
+
+    def acceleration(self) -> float:
+        """Return the acceleration [steps/s²]."""
+        return self._acceleration
+
+    def deceleration(self) -> float:
+        """Return the deceleration [steps/s²]."""
+        return self._deceleration
+
+    # where it is
+
+    def current_position(self) -> int:
+        """Return how many steps it stands from 0."""
+        return self._position
+
+    def set_current_position(self, position: int) -> None:
+        """Call the place where it stands ``position``; the target is the same place, and the speed is 0."""
+        self._position = self._target = position
+        self._square, self._speed = 0.0, 0.0
+        self._due = self._steady = None
+
+    def target_position(self) -> int:
+        """Return where it is going [steps]."""
+        return self._target
+
+    def distance_to_go(self) -> int:
+        """Return the steps from where it stands to the target, signed."""
+        return self._target - self._position
+
+    def speed(self) -> float:
+        """Return the speed after the last step of a ramp, or else the one that was set [steps/s], signed."""
+        return self._way * math.sqrt(self._square) if self._square else self._speed
+
+    def is_running(self) -> bool:
+        """Return whether it moves, or has steps to go."""
+        return self._square > 0.0 or self._position != self._target
+
+    # speeding up and braking
+
+    def move_to(self, position: int) -> None:
+        """Set an absolute target [steps]; ``run`` gets there."""
+        self._target = position
+        self._change()
+
+    def move(self, steps: int) -> None:
+        """Set a target as many steps from here."""
+        self.move_to(self._position + steps)
+
+    def run(self) -> bool:
+        """Make the step that is due, if one is; return whether there is still way to go.
+
+        Call it again and again: where nothing is due yet, time passes to what is due next.
+        """
+        if self._due is None:  # the way begins now; other motors may begin theirs before time goes on
+            self._plan(self.time.now)
+            return self._due is not None
+        moment, square = self._due
+        if self.time.now < moment:
+            self.time.idle()
+            return True
+        self._make(moment, self._way)
+        self._square = square
+        self._plan(moment)
+        return self.is_running()
+
+    def run_to_position(self) -> None:
+        """Run until the target is reached."""
+        while self.run():
+            pass
+
+    def run_to_new_position(self, position: int) -> None:
+        """Set a target and run until it is reached."""
+        self.move_to(position)
+        self.run_to_position()
+
+    def stop(self) -> None:
+        """Set the nearest target that braking allows: ``run`` comes to rest there."""
+        self.move_to(self._position + self._way * math.ceil(self._square / (2.0 * self._deceleration) - 1e-9))
+
+    # constant speed
+
+    def set_speed(self, speed: float) -> None:
+        """Set the speed of ``run_speed`` [steps/s], at most the greatest speed; 0 stands still."""
+        if not math.isfinite(speed):
+            raise LimitError(f"a speed must be a number of steps/s, not {speed}")
+        self._speed = max(-self._max_speed, min(self._max_speed, speed))
+        self._steady = None
+
+    def run_speed(self) -> bool:
+        """Make the step that is due at constant speed, if one is; return whether it was made."""
+        if not self._speed:
+            return False
+        if self._steady is None:
+            self._steady = self.time.now + 1.0 / abs(self._speed)
+        if self.time.now < self._steady:
+            self.time.idle()
+            return False
+        self._make(self._steady, 1 if self._speed > 0 else -1)
+        self._steady += 1.0 / abs(self._speed)
+        return True
+
+    def run_speed_to_position(self) -> bool:
+        """As ``run_speed``, towards the target, whatever the speed's sign; return whether there is way to go."""
+        left = self.distance_to_go()
+        if not left or not self._speed:
+            self._steady = None
+            return False
+        self._speed = math.copysign(self._speed, left)
+        self.run_speed()
+        return self._position != self._target
+
+    # current
+
+    def enable_outputs(self) -> None:
+        """Switch the windings on."""
+        self.output.energise(self.time.now, on=True)
+
+    def disable_outputs(self) -> None:
+        """Switch the windings off: the motor no longer holds its place."""
+        self.output.energise(self.time.now, on=False)
+
+    # inside
+
+    def _make(self, moment: float, way: int) -> None:
+        """Make one step."""
+        self._last, self._way = moment, way
+        self._position += way
+        self.output.step(moment, way)
+
+    def _plan(self, begin: float) -> None:
+        """Find when the next step is due, the one before or the beginning having been at ``begin`` [s]."""
+        self._due = None
+        if self._square == 0.0:
+            if self._position == self._target:
+                return
+            self._way = 1 if self._target > self._position else -1
+        left = max(self._way * self.distance_to_go() - 1, 0)
+        duration, square = next_step(
+            self._square,
+            gain=2.0 * self._acceleration,
+            loss=2.0 * self._deceleration,
+            top=self._max_speed**2,
+            end=2.0 * self._deceleration * left,
+        )
+        self._due = (begin + duration, square)
+
+    def _change(self) -> None:
+        """Take up a new target or limit in motion, never with a step in the past; at rest, ``run`` does."""
+        if self._square == 0.0:
+            self._due = None
+            return
+        self._plan(self._last)
+        if self._due is not None and self._due[0] < self.time.now:
+            self._due = (self.time.now, self._due[1])
+
+    def _next_due(self) -> float | None:
+        """Return when something is due [s]."""
+        moments = [self._due[0]] if self._due else []
+        if self._steady is not None:
+            moments.append(self._steady)
+        return min(moments, default=None)
+
+
+def _positive(name: str, value: float, unit: str) -> float:
+    """Return a value above 0."""
+    if not 0.0 < value < math.inf:
+        raise LimitError(f"the {name} must be more than 0 {unit}, not {value:g}", hint="To stand still, stop().")
+    return value

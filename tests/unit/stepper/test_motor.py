@@ -1,0 +1,166 @@
+"""The step library against closed forms: exact ramps, targets changed in motion, arrival together."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from trochia.errors import LimitError
+from trochia.pulses.ramps import Demand, profile
+from trochia.stepper import Kept, Stepper, StepperGroup, VirtualTime
+
+moves = st.tuples(st.integers(1, 300), st.floats(1, 1000), st.floats(1, 5000), st.floats(1, 5000))
+
+
+def motor(speed: float = 600, up: float = 1500, down: float | None = None) -> tuple[Stepper, Kept]:
+    kept = Kept()
+    made = Stepper(kept, VirtualTime())
+    made.set_max_speed(speed)
+    made.set_acceleration(up, down)
+    return made, kept
+
+
+@given(moves)
+def test_a_move_is_the_exact_law(given_move: tuple[int, float, float, float]):
+    steps, speed, up, down = given_move
+    made, kept = motor(speed, up, down)
+    made.run_to_new_position(-steps)
+    exact = profile(Demand(steps=steps, speed=speed, acceleration=up, deceleration=down))
+    assert np.array(kept.moments) == pytest.approx(exact.times, rel=1e-9)
+    assert set(kept.directions) == {-1}
+    assert made.current_position() == -steps
+    assert not made.is_running()
+    assert made.speed() == 0
+
+
+def test_targets_are_absolute_and_moves_relative():
+    made, _ = motor()
+    made.set_current_position(500)
+    made.move_to(200)
+    assert made.distance_to_go() == -300
+    made.move_to(550)
+    assert made.distance_to_go() == 50
+    made.move(-10)
+    assert made.target_position() == 490
+
+
+def test_run_makes_one_step_at_most():
+    made, kept = motor()
+    made.move(3)
+    seen = []
+    while made.run():
+        seen.append(len(kept.moments))
+    assert all(after - before <= 1 for before, after in pairwise(seen))
+    assert len(kept.moments) == 3
+    assert not made.run()
+
+
+def test_stop_brakes_as_hard_as_it_may_and_no_harder():
+    made, kept = motor(600, 1500)
+    made.move(10_000)
+    while made.current_position() < 400:
+        made.run()
+    made.stop()
+    assert made.target_position() == 400 + math.ceil(600**2 / (2 * 1500))
+    made.run_to_position()
+    late = np.diff(kept.moments)[400:]
+    assert (np.diff(late) > -1e-9).all()
+    assert made.current_position() == 520
+
+
+@given(st.integers(-200, 200), st.integers(0, 200))
+def test_a_target_behind_is_reached_by_braking_first(target: int, at: int):
+    """The speed's square never changes by more than 2 a a step, whatever the target does."""
+    made, kept = motor(400, 900)
+    made.move(10_000)
+    while made.current_position() < at:
+        made.run()
+    made.move_to(target)
+    made.run_to_position()
+    assert made.current_position() == target
+    speeds = np.array(kept.directions[1:]) / np.maximum(np.diff(kept.moments), 1e-12)
+    assert np.abs(speeds).max(initial=0) <= 400 * (1 + 1e-9)
+    assert (np.diff(kept.moments) > 0).all()
+
+
+def test_constant_speed_and_its_position():
+    made, kept = motor(150)
+    made.set_speed(-150)
+    while made.time.now < 1.0:
+        made.run_speed()
+    assert made.current_position() == pytest.approx(-150, abs=1)
+    assert np.diff(kept.moments) == pytest.approx(1 / 150)
+    made.move_to(20)
+    while made.run_speed_to_position():
+        pass
+    assert made.current_position() == 20
+    assert made.speed() == 150
+
+
+def test_a_speed_is_limited_and_zero_stands_still():
+    made, kept = motor(100)
+    made.set_speed(-900)
+    assert made.speed() == -100
+    made.set_speed(0)
+    assert not made.run_speed()
+    assert not kept.moments
+
+
+def test_limits_may_change_in_motion():
+    made, kept = motor(200, 1000)
+    made.move(400)
+    while made.current_position() < 100:
+        made.run()
+    made.set_max_speed(500)
+    while made.current_position() < 250:
+        made.run()
+    assert made.speed() == pytest.approx(500)
+    made.set_max_speed(100)
+    made.run_to_position()
+    assert made.current_position() == 400
+    assert np.abs(np.diff(1 / np.diff(kept.moments) ** 2)).max() < 2 * 2 * 1000
+
+
+def test_figures_that_cannot_be_are_refused():
+    made, _ = motor()
+    for refused in (made.set_max_speed, made.set_acceleration):
+        with pytest.raises(LimitError, match="more than 0"):
+            refused(0)
+    with pytest.raises(LimitError, match="number"):
+        made.set_speed(math.nan)
+    with pytest.raises(LimitError, match="share one time"):
+        StepperGroup(made, motor()[0])
+    with pytest.raises(LimitError, match="as many targets"):
+        StepperGroup(made).move_to([1, 2])
+
+
+def test_outputs_are_switched():
+    made, kept = motor()
+    made.enable_outputs()
+    made.disable_outputs()
+    assert kept.switched == [(0.0, True), (0.0, False)]
+
+
+@given(st.lists(st.integers(-300, 300), min_size=1, max_size=4).filter(any))
+def test_a_group_arrives_together(targets: list[int]):
+    time = VirtualTime()
+    outputs = [Kept() for _ in targets]
+    motors = [Stepper(output, time) for output in outputs]
+    for i, made in enumerate(motors):
+        made.set_max_speed(100 + 70 * i)
+        made.set_acceleration(500 + 300 * i, 700)
+    group = StepperGroup(*motors)
+    group.move_to(targets)
+    group.run_to_position()
+    assert [made.current_position() for made in motors] == targets
+    ends = [output.moments[-1] for output in outputs if output.moments]
+    assert ends == pytest.approx([ends[0]] * len(ends), rel=1e-9)
+    for made, output in zip(motors, outputs, strict=True):
+        group.release_limits()
+        if len(output.moments) > 1:
+            assert (1 / np.diff(output.moments)).max() <= made.max_speed() * (1 + 1e-9)
