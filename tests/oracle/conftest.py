@@ -20,6 +20,7 @@ from trochia.program import WorkState
 RS274 = shutil.which("rs274")
 TOLERANCE = 1.001e-4  # both round to four decimals
 _COLUMNS = re.compile(r"^ *\d+ (?:N\.{5}|N\d+|N {5}) *(?=[A-Z])")  # counter and line number
+_ASIDE = ("executing", "num_spindles")  # what it says beside the error
 _NUMBER = re.compile(r"-?\d+\.\d+")
 
 
@@ -56,7 +57,8 @@ def reference(text: bytes, variables: str | None = None, tools: str | None = Non
                 timeout=20,
                 check=False,
             )
-            said = [line for line in done.stderr.decode("latin-1").split("\n") if line != "executing"]
+            said = [line for line in done.stderr.decode("latin-1").split("\n") if not line.startswith(_ASIDE)]
+            ]
             if done.returncode == 0 or len(said) > 1:
                 break
     lines = [_COLUMNS.sub("", line, count=1) for line in done.stdout.decode("latin-1").split("\n")[:-1]]

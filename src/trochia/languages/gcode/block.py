@@ -24,7 +24,8 @@ _Error = TypeVar("_Error", bound=ProgramError)
 AXIS = {letter: column for column, letter in enumerate("xyzabcuvw")}
 _VALUES = frozenset("dehijklpqr$") | frozenset(POLAR) | frozenset(WORDS) | frozenset(AXIS)
 _NOT_NEGATIVE = frozenset("fst")
-_WHOLE = frozenset("l")
+_WHOLE = frozenset("lt")
+_MOST = 2**31 - 1  # of a word that is a whole number
 _USER_CODES = 1000  # tenths: from M100 on
 
 
@@ -128,7 +129,7 @@ def _add_value(block: Block, word: Word, allowed: str) -> None:
         raise block.place.fault(ParseError, f"{letter.upper()} must not be negative", at)
     if letter in _WHOLE:
         count = as_integer(value)
-        if count is None or count < 0:
+        if count is None or not 0 <= count <= _MOST:
             raise block.place.fault(ParseError, f"{letter.upper()} must be a whole number, 0 or more", at)
     block.values[letter] = value
     block.where[letter] = at

@@ -83,6 +83,8 @@ def _check_readers(block: Block) -> None:
     """Check that every word is read by a code of the line."""
     readers = block.codes if block.motion is None else [*block.codes, block.motion]
     for letter in block.values:
+        if letter == "$" and "s" in block.values:
+            continue
         if letter not in _OPEN and not any(letter in code.words for code in readers):
             users = sorted({code.name for code in G_CODES.values() if letter in code.words})
             hint = f"It is read by {' '.join(users)}." if users else "No code known here reads it."
@@ -91,7 +93,9 @@ def _check_readers(block: Block) -> None:
 
 def _check_non_modal(block: Block, state: State, other: Code) -> None:
     """Check what G4, G53 and G92 ask of their line."""
-    if other.name == "G4":
+    if other.check is not None:
+        other.check(block, state)
+    elif other.name == "G4":
         _check_dwell(block)
     elif other.name in ("G92", "G52") and not block.axes:
         raise block.fault(ParseError, f"{other.name} has no axis word", other.name,

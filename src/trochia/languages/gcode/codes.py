@@ -39,7 +39,7 @@ class Code:
     takes_axes
         It takes the axis words, so that no motion code can stand beside it.
     check
-        For a motion code: refuses a line that is wrong before anything on it acts.
+        For a motion code and G10: refuses a line that is wrong before anything on it acts.
     """
 
     name: str

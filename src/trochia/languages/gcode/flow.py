@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING
 
 from trochia.errors import ModalConflictError, ParseError, ProgramError
 from trochia.languages.gcode.computed import Computed
-from trochia.languages.gcode.owords import BARE, GLOBAL, Control
+from trochia.languages.gcode.numbers import as_integer
+from trochia.languages.gcode.owords import BARE, GLOBAL, UNKNOWN, Control
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -101,7 +102,11 @@ class Flow:
         word = control.word
         if self._sub is not None and word not in GLOBAL:
             name = f"{self._sub}#{name}"
-        if word == "sub" and self._defining:
+        if word == UNKNOWN:
+            if self._defining:
+                return
+            raise control.not_known()
+        if word in ("sub", BARE) and self._defining:
             raise control.fault(ModalConflictError, "a subroutine begins inside another one",
                                 hint=f"O{self._sub} has no ENDSUB before this line.")  # fmt: skip
         if self.skipping is not None and (name != self.skipping or word == "call"):
@@ -154,9 +159,9 @@ class Flow:
 
     def _call_program(self, control: Control, name: str, mark: Mark) -> None:
         del mark
-        times = 1 if control.times is None else round(control.guarded(control.times))
-        if times < 0:
-            raise control.fault(ParseError, "L must not be negative")
+        times = 1 if control.times is None else as_integer(control.guarded(control.times))
+        if times is None or times < 0:
+            raise control.fault(ParseError, "L must be a whole number, 0 or more")
         if times > 0:
             self._enter(control, name, None, left=times)
 
@@ -188,7 +193,7 @@ class Flow:
         del name, mark
         values = control.numbers(self._parameters)
         if not self.calls:
-            self._end_definition(control)
+            self._end_definition(control, values)
             return
         call = self.calls[-1]
         if (call.word == "m98") != (control.word == "m99"):
@@ -206,12 +211,13 @@ class Flow:
         self._sub = call.sub
         self.on_return(control.place)
 
-    def _end_definition(self, control: Control) -> None:
+    def _end_definition(self, control: Control, values: list[float]) -> None:
         if control.word == "m99":
             self.ended = True
         elif self._sub is None or (control.word == "endsub" and not self._defining):
             raise control.fault(ModalConflictError, f"{control.word.upper()} stands in no subroutine")
         elif control.word == "endsub":
+            self.value, self.returned = (values[0], 1.0) if values else (0.0, 0.0)
             self.skipping = None
             self._defining = False
             self._sub = None

@@ -30,6 +30,7 @@ WORDS = {
 }  # fmt: skip
 GLOBAL = frozenset(("sub", "endsub", "call", "return", "", "m98", "m99"))  #: labels that are the whole program's
 BARE = ""  #: a label alone begins a program that M98 calls
+UNKNOWN = "?"  #: no word; a line that is passed over in a subroutine's definition may have it
 _WORD = re.compile("|".join(sorted(WORDS, key=len, reverse=True)))
 _NAME = re.compile(r"<([^>]*)>")
 _NONE: list[float] = []  # never changed
@@ -104,6 +105,13 @@ class Control:
         """Return an error that points at the O-word."""
         return self.place.fault(kind, message, self.at, hint=hint)
 
+    def not_known(self) -> ProgramError:
+        """Return the error of a word that is none of :data:`WORDS`."""
+        rest = self.text[self.after :].replace("()", "")
+        what = f"an O-word cannot go on like this: {rest[:12].upper()!r}"
+        return self.place.fault(UnknownCodeError, what, self.after,
+                                hint="Known are " + " ".join(word.upper() for word in WORDS) + ".")  # fmt: skip
+
     def _read(self, parameters: Parameters) -> list[Value]:
         least, most = WORDS.get(self.word, (0, 0))
         text, at = self.text, self.after
@@ -134,15 +142,11 @@ def read_control(text: str, at: int, place: Place, parameters: Parameters) -> Co
     ------
     ParseError
         For a label that is no name and no whole number.
-    UnknownCodeError
-        For a word that is none of :data:`WORDS`.
     """
     label, end = _label(text, at, place, parameters)
     match = _WORD.match(text, end)
-    rest = text[end:].replace("()", "")
-    if match is None and rest:
-        raise place.fault(UnknownCodeError, f"an O-word cannot go on like this: {rest[:12].upper()!r}", end,
-                          hint="Known are " + " ".join(word.upper() for word in WORDS) + ".")  # fmt: skip
+    if match is None and text[end:].replace("()", ""):
+        return Control(UNKNOWN, label, place, at, text, end, spelled=text[at:end])
     word, after = (match.group(), match.end()) if match else (BARE, end)
     return Control(word, label, place, at, text, after, spelled=text[at:end])
 

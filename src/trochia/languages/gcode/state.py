@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from trochia.languages.gcode.parameters import Parameters
 from trochia.program.modes import PathMode, Plane, TimeLaw
+from trochia.program.parameter_file import ACTIVE
 from trochia.program.tools import NO_TOOL, Tool
 
 if TYPE_CHECKING:
@@ -174,6 +175,7 @@ def begin(work: WorkState, start: tuple[float, ...]) -> State:
         slot=numbers.index(work.tool) + 1 if work.tool in numbers else 1,
         in_spindle=next((tool for tool in work.tools or () if work.tool and tool.number == work.tool), NO_TOOL),
     )
+    state.parameters.numbered[ACTIVE] = float(work.active)
     state.position = to_program(state, start)
     return state
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from trochia.languages.gcode.computed import Computed
 from trochia.program.modes import AXES
-from trochia.program.parameter_file import ACTIVE, FIRST_SYSTEM, G28, G30, ROTATION, SHIFT, SHIFT_ON, STEP
+from trochia.program.parameter_file import FIRST_SYSTEM, G28, G30, ROTATION, SHIFT, SHIFT_ON, STEP
 from trochia.program.work import SYSTEMS
 
 if TYPE_CHECKING:
@@ -114,7 +114,6 @@ def _origin(system: int) -> Point:
 _BY_NUMBER: dict[int, Maker] = {
     **_points(),
     SHIFT_ON: _shift_on,
-    ACTIVE: lambda state: Computed(lambda: float(state.system)),
     INPUT: _input,
     TOOL: lambda state: Computed(lambda: float(state.loaded)),
     **{TOOL_OFFSET + axis: _tool_axis(axis) for axis in range(len(AXES))},

@@ -254,6 +254,7 @@ class Walk:
     def _end_by_return(self, place: Place) -> bool:
         """End the program by an M99 of the main program, which acts as M2."""
         self._act(read_template(Place(place.file, place.line, b"m2"), self._state.parameters))
+        self._look_for_percent()
         return True
 
     # --- calls and errors

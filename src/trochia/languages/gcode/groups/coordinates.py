@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from trochia.languages.gcode.codes import Code, Handler, table
 from trochia.languages.gcode.frames import in_program_units, to_machine, to_program
+from trochia.program.parameter_file import ACTIVE
 from trochia.program.work import SYSTEMS
 
 if TYPE_CHECKING:
@@ -33,6 +34,7 @@ def _use(system: int) -> Handler:
 def activate(state: State, system: int) -> None:
     """Make a stored system the active one; the current point is the caller's to convert."""
     state.system = system
+    state.parameters.numbered[ACTIVE] = float(system)
     state.origin = in_program_units(state, state.systems[system - 1])
     state.rotation = state.rotations[system - 1]
 

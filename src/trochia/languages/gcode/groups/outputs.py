@@ -48,7 +48,7 @@ def _analogue(*, synchronised: bool) -> Handler:
 def wait(block: Block, state: State, sink: Sink) -> None:
     """M66: read an input, or wait for it; #5399 gets what it was, here 0, because nobody answers."""
     values = block.values
-    if values.get("p", _NOT_GIVEN) >= 0 and values.get("e", _NOT_GIVEN) >= 0:
+    if "p" in values and "e" in values:
         raise block.fault(ModalConflictError, "M66 takes a digital (P) or an analogue input (E), not both", "e")
     analogue = values.get("p", _NOT_GIVEN) < 0
     index = floor(values.get("e" if analogue else "p", _NOT_GIVEN) + 0.5)

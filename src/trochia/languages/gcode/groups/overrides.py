@@ -8,7 +8,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from trochia.languages.gcode.codes import Code, table
-from trochia.languages.gcode.groups.spindle import check_spindle
 
 if TYPE_CHECKING:
     from trochia.languages.gcode.block import Block
@@ -42,7 +41,6 @@ def feed(block: Block, state: State, sink: Sink) -> None:
 
 def speed(block: Block, state: State, sink: Sink) -> None:
     """M51: the spindle's override."""
-    check_spindle(block)
     state.speed_override = _asked(block)
     sink.speed_override(on=state.speed_override)
 
@@ -69,7 +67,7 @@ M_CODES = table(
     Code(name="M48", about="overrides act", group=_GROUP, step=_GROUP, run=all_on),
     Code(name="M49", about="overrides do not act", group=_GROUP, step=_GROUP, run=all_off),
     Code(name="M50", about="feed override acts, P0: not", group=_GROUP, step=_GROUP, run=feed, words="p"),
-    Code(name="M51", about="speed override acts, P0: not", group=_GROUP, step=_GROUP, run=speed, words="p$"),
+    Code(name="M51", about="speed override acts, P0: not", group=_GROUP, step=_GROUP, run=speed, words="p"),
     Code(name="M52", about="adaptive feed acts, P0: not", group=_GROUP, step=_GROUP, run=adaptive, words="p"),
     Code(name="M53", about="feed hold acts, P0: not", group=_GROUP, step=_GROUP, run=hold, words="p"),
 )

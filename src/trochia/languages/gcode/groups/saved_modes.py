@@ -143,11 +143,11 @@ def _run(line: str, place: Place, state: State, sink: Sink) -> None:
                           hint=error.hint) from error  # fmt: skip
 
 
-_GROUP = "saved modes"
+_GROUP, _STEP = "spindle", "saved modes"  # the reference has one group for both
 M_CODES = table(
-    Code(name="M70", about="keep the modes", group=_GROUP, step=_GROUP, run=keep),
-    Code(name="M71", about="forget the kept modes", group=_GROUP, step=_GROUP, run=forget),
-    Code(name="M72", about="bring the kept modes back", group=_GROUP, step=_GROUP, run=bring_back),
-    Code(name="M73", about="keep the modes until the subroutine returns", group=_GROUP, step=_GROUP,
+    Code(name="M70", about="keep the modes", group=_GROUP, step=_STEP, run=keep),
+    Code(name="M71", about="forget the kept modes", group=_GROUP, step=_STEP, run=forget),
+    Code(name="M72", about="bring the kept modes back", group=_GROUP, step=_STEP, run=bring_back),
+    Code(name="M73", about="keep the modes until the subroutine returns", group=_GROUP, step=_STEP,
          run=keep_for_return),
 )  # fmt: skip

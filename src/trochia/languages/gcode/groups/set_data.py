@@ -26,21 +26,44 @@ if TYPE_CHECKING:
 
 _FIXTURE = 9  # G59.3, from which L11 measures
 _MOST_ORIENTATION = 9
+_KINDS = (0, 1, 2, 10, 11, 20)
+_NEAR = 1e-4 * (1 + 1e-9)  # by which P may miss an integer
 _WHAT = "L2 sets an origin, L20 makes the current point read so; L1, L10 and L11 set a tool; L0 reads the tools anew."
 
 
 def set_data(block: Block, state: State, sink: Sink) -> None:
     """G10."""
-    kind = int(block.values.get("l", -1))
+    kind = int(block.values["l"])
     if kind == 0:
         _reload(block, state, sink)
     elif kind in (2, 20):
         _set_system(block, state, sink, to_here=kind == 20)
-    elif kind in (1, 10, 11):
-        _set_tool(block, state, sink, kind)
     else:
+        _set_tool(block, state, sink, kind)
+
+
+def check_data(block: Block, state: State) -> None:
+    """Check what is to be set, before anything on the line acts.
+
+    Raises
+    ------
+    ParseError
+        For an L that is not known, and a P that is no number of a system or tool.
+    """
+    del state
+    kind, number = int(block.values.get("l", -1)), block.values.get("p", -1.0)
+    whole = floor(number + 0.5)
+    if kind not in _KINDS:
         raise block.fault(ParseError, "G10 needs L0, L1, L2, L10, L11 or L20", "l" if "l" in block.values else "G10",
                           hint=_WHAT)  # fmt: skip
+    if kind and "p" in block.values and number - whole > _NEAR:
+        raise block.fault(ParseError, "P of G10 must be a whole number", "p")
+    if kind in (2, 20) and not 0 <= whole <= len(SYSTEMS):
+        raise block.fault(ParseError, "G10 L2 and L20 need P from 0 to 9", "p" if "p" in block.values else "G10",
+                          hint="P1 is G54, P2 G55 … P9 G59.3; P0 the one in force.")  # fmt: skip
+    if kind in (1, 10, 11) and whole < 1:
+        raise block.fault(ParseError, f"G10 L{kind} needs a tool number as P", "p" if "p" in block.values else "G10",
+                          hint=f"Write it like G10 L{kind} P3 Z12.5.")  # fmt: skip
 
 
 def _reload(block: Block, state: State, sink: Sink) -> None:
@@ -54,10 +77,7 @@ def _reload(block: Block, state: State, sink: Sink) -> None:
 
 def _set_system(block: Block, state: State, sink: Sink, *, to_here: bool) -> None:
     """L2: the origin is at the words; L20: the current point reads the words."""
-    system = floor(block.values.get("p", -1.0) + 0.5)
-    if not 0 <= system <= len(SYSTEMS):
-        raise block.fault(ParseError, "G10 L2 and L20 need P from 0 to 9", "p" if "p" in block.values else "G10",
-                          hint="P1 is G54, P2 G55 … P9 G59.3; P0 the one in force.")  # fmt: skip
+    system = int(block.values["p"] + _NEAR)  # not the nearest one, as the reference has it
     _refuse(block, "ijr" if to_here else "ij")
     system = system or state.system
     here = to_machine(state, state.position)
@@ -93,10 +113,7 @@ def _origin_that_reads(block: Block, state: State, system: int, origin: list[flo
 
 def _set_tool(block: Block, state: State, sink: Sink, kind: int) -> None:
     """L1: the offset is given; L10, L11: with it the current point reads the words, in this system or in G59.3."""
-    number = floor(block.values.get("p", -1.0) + 0.5)
-    if number < 1:
-        raise block.fault(ParseError, f"G10 L{kind} needs a tool number as P", "p" if "p" in block.values else "G10",
-                          hint=f"Write it like G10 L{kind} P3 Z12.5.")  # fmt: skip
+    number = floor(block.values["p"] + 0.5)
     if state.tools is None:
         raise block.fault(ParseError, "there is no tool table to write to", "G10", hint="Name its file: --tools FILE.")
     slot = slot_of(number, block, state, "p")
@@ -166,5 +183,5 @@ def _refuse(block: Block, letters: str) -> None:
 
 G_CODES = table(
     Code(name="G10", about="set coordinate systems and tools", group="non-modal", step="non-modal", run=set_data,
-         words="lprijq", takes_axes=True),
+         words="lprijq", takes_axes=True, check=check_data),
 )  # fmt: skip

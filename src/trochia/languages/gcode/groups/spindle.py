@@ -84,9 +84,9 @@ def orient(block: Block, state: State, sink: Sink) -> None:
         raise block.fault(ParseError, "R of M19 is an angle from 0 to 360", "r")
     if way is None or not 0 <= way <= _WAYS:
         raise block.fault(ParseError, "P of M19 is 0 (shorter way), 1 (clockwise) or 2 (counter-clockwise)", "p")
-    if angle is not None:
+    if angle is not None or "p" in block.values:
         state.direction = 0
-        sink.orient_spindle(angle, way)
+        sink.orient_spindle(angle or 0.0, way)
     if "q" in block.values:
         if block.values["q"] <= 0:
             raise block.fault(ParseError, "Q of M19 is the longest time to wait, above zero", "q")
@@ -97,8 +97,8 @@ S = WordCode(letter="s", about="spindle speed or beam power", step="speed", run=
 
 G_CODES = table(
     Code(name="G96", about="S is the speed of the cut", group="spindle mode", step="spindle mode",
-         run=surface_speed, words="d$"),
-    Code(name="G97", about="S is the speed", group="spindle mode", step="spindle mode", run=constant_speed, words="$"),
+         run=surface_speed, words="d"),
+    Code(name="G97", about="S is the speed", group="spindle mode", step="spindle mode", run=constant_speed),
 )  # fmt: skip
 M_CODES = table(
     Code(name="M3", about="spindle clockwise, beam on", group="spindle", step="spindle", run=_start(+1), words="$"),

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 from trochia.errors import ParseError
 from trochia.languages.gcode.codes import Code, WordCode, table
-from trochia.languages.gcode.numbers import as_integer
 from trochia.program.tools import NO_TOOL, Tool
 
 if TYPE_CHECKING:
@@ -21,10 +20,7 @@ if TYPE_CHECKING:
 
 def select(block: Block, state: State, sink: Sink) -> None:
     """T: make a tool ready."""
-    tool = as_integer(block.values["t"])
-    if tool is None:
-        raise block.fault(ParseError, f"T{block.values['t']:g} is no tool number", "t",
-                          hint="Tools have whole numbers.")  # fmt: skip
+    tool = round(block.values["t"])
     slot_of(tool, block, state, "t")
     state.tool = tool
     sink.select_tool(tool)
