@@ -58,7 +58,6 @@ def reference(text: bytes, variables: str | None = None, tools: str | None = Non
                 check=False,
             )
             said = [line for line in done.stderr.decode("latin-1").split("\n") if not line.startswith(_ASIDE)]
-            ]
             if done.returncode == 0 or len(said) > 1:
                 break
     lines = [_COLUMNS.sub("", line, count=1) for line in done.stdout.decode("latin-1").split("\n")[:-1]]
