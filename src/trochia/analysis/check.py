@@ -9,7 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from trochia.analysis.habits import warnings
+import numpy as np
+
+from trochia.analysis.habits import locked_moves, warnings
 from trochia.analysis.margins import margins
 from trochia.analysis.problems import Problem, Severity, from_error, more_lines
 from trochia.analysis.shaped import warning as shaping_warning
@@ -18,6 +20,8 @@ from trochia.analysis.travel import travel_error
 
 if TYPE_CHECKING:
     from typing import Any
+
+    from numpy.typing import NDArray
 
     from trochia.analysis.plan import Plan
 
@@ -71,6 +75,7 @@ def judge(plan: Plan) -> Verdict:
     uses = torque_use(plan)
     problems = [*lost_step_problems(plan, uses), *warnings(plan.program, plan.machine), *_slowed(plan)]
     problems += shaping_warning(plan.deviation, plan.machine, plan.program.name)
+    problems.sort(key=lambda problem: problem.severity is not Severity.ERROR)
     outside = travel_error(plan)
     if outside is not None:
         problems.insert(0, from_error(outside, plan.program.name))
@@ -80,10 +85,14 @@ def judge(plan: Plan) -> Verdict:
 def _slowed(plan: Plan) -> list[Problem]:
     """Return one warning for the feeds that the machine's velocity limits do not allow."""
     rows = plan.trajectory.slowed
+    locked = np.isin(rows, locked_moves(plan.program))
+    found = _lost_pitch(plan, plan.program.moves["line"][rows[locked]]) if locked.any() else []
+    rows = rows[~locked]
     if not len(rows):
-        return []
+        return found
     lines = plan.program.moves["line"][rows]
     return [
+        *found,
         Problem(
             severity=Severity.WARNING,
             code="feed-slowed",
@@ -91,5 +100,19 @@ def _slowed(plan: Plan) -> list[Problem]:
             line=int(lines[0]),
             message=f"the feed is above what the machine's velocity limits allow and is slowed{more_lines(lines)}",
             hint="Nothing is wrong with the part; only the time is longer than the feed says.",
+        ),
+    ]
+
+
+def _lost_pitch(plan: Plan, lines: NDArray[np.uint32]) -> list[Problem]:
+    """Return the error of moves locked to the spindle that cannot keep up with it."""
+    return [
+        Problem(
+            severity=Severity.ERROR,
+            code="lock-too-fast",
+            file=plan.program.name,
+            line=int(lines[0]),
+            message=f"the spindle is faster than the axes can follow at this pitch{more_lines(lines)}",
+            hint="Lower S: a move locked to the spindle cannot be slowed without losing its pitch.",
         )
     ]

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trochia.analysis.problems import Problem, Severity, more_lines
-from trochia.program import AXES, Dwell, MoveKind, Pause, Spindle, ToolChange, Unfinished
+from trochia.program import AXES, Dwell, MoveKind, Pause, Spindle, SpindleLock, ToolChange, Unfinished
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -97,6 +97,14 @@ def _lit_rests(program: Program) -> Iterable[int]:
             lit = action.direction != 0
         elif lit and (isinstance(action, ToolChange | Pause) or (isinstance(action, Dwell) and action.seconds > 0)):
             yield action.line
+
+
+def locked_moves(program: Program) -> NDArray[np.intp]:
+    """Return the rows of the moves that are locked to the spindle, rising."""
+    turns = [(action.at, action.pitch) for action in program.actions if isinstance(action, SpindleLock)]
+    ends = [at for at, _ in turns[1:]] + [len(program.moves)]
+    spans = [np.arange(at, end) for (at, pitch), end in zip(turns, ends, strict=True) if pitch] if turns else []
+    return np.concatenate([*spans, np.zeros(0, dtype=np.intp)]).astype(np.intp)
 
 
 def _warn(program: Program, code: str, lines: NDArray[np.uint32], message: str, hint: str) -> Problem:

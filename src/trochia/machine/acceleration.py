@@ -16,9 +16,12 @@ from trochia.errors import ConfigError
 from trochia.machine.codecs import Quantity
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import ArrayLike, NDArray
 
 _PAIR = 2
+_PLACES = 16  #: a knot, where a function is looked at
 _SPEED = Quantity("velocity", motion=True)
 _ACCELERATION = Quantity("acceleration", motion=True)
 MOST_KNOTS = 32  #: as many as ``core/host/plan_torque.h`` has room for
@@ -80,6 +83,25 @@ class AccelerationCurve:
         if not kept.any():
             raise ConfigError("the motor's torque does not exceed the load at any speed")
         return cls(knots=tuple(zip(at[kept].tolist(), rest[kept].tolist(), strict=True)))
+
+    @classmethod
+    def below(cls, function: Callable[[NDArray[np.float64]], NDArray[np.float64]], top: float) -> AccelerationCurve:
+        """Return a curve up to speed ``top`` that is nowhere above a function of speed, seen at sixteen places a knot.
+
+        Raises
+        ------
+        ConfigError
+            When the function is not above zero.
+        """
+        speeds = np.linspace(0.0, top, MOST_KNOTS)
+        seen = np.linspace(0.0, top, _PLACES * (MOST_KNOTS - 1) + 1)
+        values = np.minimum.accumulate(np.asarray(function(seen), dtype=np.float64))
+        knots = values[::_PLACES]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            share = np.nan_to_num(values / np.interp(seen, speeds, knots), nan=0.0)
+        part = np.append(share[:-1].reshape(-1, _PLACES).min(axis=1), 1.0)  # of the stretch behind each knot
+        knots = np.minimum.accumulate(knots * np.minimum(part, np.append(1.0, part[:-1])))
+        return cls(knots=tuple(zip(speeds.tolist(), knots.tolist(), strict=True)))
 
     @property
     def top(self) -> float:

@@ -12,7 +12,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from trochia.errors import ConfigError
 from trochia.machine.acceleration import AccelerationCurve
+from trochia.machine.rates import joint_velocity
+from trochia.machine.torque import drive
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -21,6 +24,8 @@ if TYPE_CHECKING:
 
     from trochia.machine.axes import Axis
     from trochia.machine.machine import Machine
+
+_REACHED = 0.98  #: of the speed at which a motor has nothing left to accelerate with
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,13 +70,28 @@ class Limits:
         return bounds
 
     @classmethod
-    def of(cls, machine: Machine) -> Limits:
-        """Return the limits of a machine."""
+    def of(cls, machine: Machine, *, motors: bool = False) -> Limits:
+        """Return the limits of a machine.
+
+        Parameters
+        ----------
+        motors
+            Joints whose file names motor, driver and load are held to what these can give at their speed too.
+
+        Raises
+        ------
+        ConfigError
+            When such a motor cannot move its load.
+        """
         rows = {_key(row): _of_axis(a) for row, a in zip(np.eye(len(machine.axes)), machine.axes, strict=True)}
         for joint, row in zip(machine.joints, machine.kinematics.matrix, strict=True):
             given = _or_inf(joint.velocity), _or_inf(joint.acceleration), _or_inf(joint.jerk)
             own = _Row(f"joint {joint.name}", *given)
             if own[1:4] != (math.inf, math.inf, math.inf):
+                rows[_key(row)] = own.tighten(rows.get(_key(row)))
+        for index, row in enumerate(machine.kinematics.matrix if motors else ()):
+            own = _of_motor(machine, index)
+            if own is not None:
                 rows[_key(row)] = own.tighten(rows.get(_key(row)))
         return cls(
             names=tuple(row.name for row in rows.values()),
@@ -104,8 +124,29 @@ class _Row(NamedTuple):
         binds = any(mine < theirs for mine, theirs in zip(self[1:4], other[1:4], strict=True))
         least = (min(self.velocity, other.velocity), min(self.acceleration, other.acceleration),
                  min(self.jerk, other.jerk))  # fmt: skip
-        curve = None if other.curve is None else other.curve.capped(self.acceleration)
-        return _Row(self.name if binds else other.name, *least, curve)
+        return _Row(self.name if binds else other.name, *least, _lesser(self, other))
+
+
+def _lesser(one: _Row, other: _Row) -> AccelerationCurve | None:
+    """Return the curve that keeps both rows' accelerations, or None where neither has one."""
+    if one.curve is not None and other.curve is not None:
+        return one.curve.least(other.curve)
+    if one.curve is not None:
+        return one.curve.capped(other.acceleration)
+    return None if other.curve is None else other.curve.capped(one.acceleration)
+
+
+def _of_motor(machine: Machine, index: int) -> _Row | None:
+    """Return what a joint's motor can give, or None where the file does not name motor and driver."""
+    motor = drive(machine, index)
+    if motor is None:
+        return None
+    top = min(joint_velocity(machine, index), _REACHED * motor.greatest_velocity)
+    name = f"motor {machine.joints[index].name}"
+    if not top > 0.0:
+        raise ConfigError("the motor cannot move its load", key=f"joints.{machine.joints[index].name}.load")
+    curve = AccelerationCurve.below(motor.acceleration, top)
+    return _Row(name, top, curve.knots[-1][1], math.inf, curve)
 
 
 def _of_axis(axis: Axis) -> _Row:

@@ -61,7 +61,7 @@ def plan(path: Toolpath, machine: Machine, *, program: Program, profile: str = "
         When there is no such profile, or the machine lacks what it needs.
     """
     profile = profile_of(machine, profile)
-    limits = Limits.of(machine)
+    limits = Limits.of(machine, motors=PROFILES[profile].by_curves)
     rests = rests_of(program, machine, path)
     schedule = PROFILES[profile](_paced(path, limits), limits, rests) if len(path) else None
     still = sum(rests.times.values())

@@ -35,7 +35,7 @@ class SCurveSchedule:
 
     continuity: ClassVar[int] = 2
     jerk_limited = True
-    by_curves = False
+    by_curves: ClassVar[bool] = False
 
     def __init__(self, path: Toolpath, limits: Limits, rests: Rests) -> None:
         lacking = [name for name, jerk in zip(limits.names, limits.jerk, strict=True) if not np.isfinite(jerk)]

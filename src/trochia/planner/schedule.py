@@ -65,6 +65,11 @@ class Profile(Protocol):
         """What its path must keep between stops: 1, direction; 2, curvature too (see ``toolpath.build``)."""
         ...
 
+    @property
+    def by_curves(self) -> bool:
+        """Whether its schedules follow curves of acceleration by speed."""
+        ...
+
     def __call__(self, path: Toolpath, limits: Limits, rests: Rests) -> Schedule:
         """Return the schedule of a path with at least one segment."""
         ...

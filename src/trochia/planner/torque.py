@@ -33,7 +33,7 @@ class TorqueSchedule:
 
     continuity: ClassVar[int] = 1
     jerk_limited = False
-    by_curves = True
+    by_curves: ClassVar[bool] = True
 
     def __init__(self, path: Toolpath, limits: Limits, rests: Rests) -> None:
         self._path, self._limits = path, limits

@@ -29,7 +29,7 @@ class TrapezoidSchedule:
 
     continuity: ClassVar[int] = 1
     jerk_limited = False
-    by_curves = False
+    by_curves: ClassVar[bool] = False
 
     def __init__(self, path: Toolpath, limits: Limits, rests: Rests) -> None:
         self._segments = path.segments

@@ -7,6 +7,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+from trochia import api
 from trochia.analysis.habits import warnings
 from trochia.machine.axes import Axis, AxisKind, PathLimits
 from trochia.machine.io import Beam
@@ -79,3 +80,13 @@ def test_beam_at_rest(seconds: float, expected: list[tuple[str, int]]):
 def test_a_rapid_below_the_lowest_cut():
     part = program((F, (0, 0, -2), 1), (R, (5, 0, -2), 1), (R, (5, 0, -3), 1), (R, (9, 0, -3), 1), (R, (9, 0, 5), 1))
     assert codes(part, machine(spindle=SPINDLE)) == [("rapid-below-cut", 4)]
+
+
+def test_a_thread_faster_than_its_axis_is_an_error():
+    text = "G95 F0.1\nS3000 M3\nG0 X10\nG33 Z-20 K2\nG0 X12\nM2\n"
+    lathe = api.load("lathe")
+    fine = api.check(text.replace("S3000", "S100"), lathe)
+    assert fine.ok, fine.problems
+    found = api.check(text, lathe)
+    assert not found.ok
+    assert [(p.code, p.line) for p in found.problems if p.severity.value == "error"] == [("lock-too-fast", 4)]

@@ -95,3 +95,14 @@ def test_the_lesser_of_two_is_nowhere_above_either(one, other):
     at = np.linspace(0.0, least.top, 501)
     expected = np.minimum(one.at(at), other.at(at))
     assert least.at(at) == pytest.approx(expected, rel=1e-9)
+
+
+def test_a_curve_below_a_function_is_nowhere_above_it():
+    def pull_out(speed):
+        return 2000.0 / (1.0 + (speed / 30.0) ** 2)  # convex at speed: straight lines between its values lie above it
+
+    curve = AccelerationCurve.below(pull_out, 200.0)
+    at = np.linspace(0.0, 200.0, 3001)
+    assert (curve.at(at) <= pull_out(at) * (1 + 2e-4)).all()  # it is looked at in sixteen places a knot
+    assert (curve.at(at) >= pull_out(at) * 0.9).all()
+    assert curve.top == 200.0

@@ -12,7 +12,8 @@ from scipy.optimize import brentq
 from trochia.languages import gcode
 from trochia.machine.acceleration import AccelerationCurve
 from trochia.machine.axes import PathLimits
-from trochia.machine.load import load
+from trochia.machine.load import load, loads
+from trochia.machine.torque import drive
 from trochia.planner import plan
 from trochia.toolpath import build
 
@@ -20,6 +21,20 @@ MILL = load("reference-mill")
 STRAIGHT = AccelerationCurve(knots=((0.0, 2000.0), (200.0, 100.0)))
 BENT = AccelerationCurve(knots=((10.0, 3000.0), (60.0, 1200.0), (150.0, 900.0), (200.0, 60.0)))
 MIXED = "G64 P0.05\nF9000\nG1 X30\nG3 X40 Y10 J10\nG1 Y30\nX0 Y31 Z5\nG2 X0 Y0 I5 J-15.5\nG0 X60 Y60"
+
+AXIS = """
+[axes.{0}]
+minimum = "0 mm"
+maximum = "100 mm"
+velocity = "300 mm/s"
+acceleration = "100 m/s²"
+
+[joints.{0}]
+motor = {{ kind = "stepper", full_steps = 200, microsteps = 8, library = "QSH5718-55" }}
+driver = {{ kind = "chopper", supply = "24 V", current = "2 A" }}
+transmission = {{ kind = "leadscrew", lead = "10 mm" }}
+load = {{ mass = "4 kg", friction = "10 N" }}
+"""
 
 
 def machine(**curves):
@@ -86,3 +101,19 @@ def test_caps_on_the_vector_bind_too():
 def test_speed_ends_with_the_curve():
     on = machine(X=AccelerationCurve(knots=((0.0, 2000.0), (90.0, 1500.0))))
     assert planned("G0 X100", on).peaks["X"]["velocity"] == pytest.approx(90.0)
+
+
+def test_motors_that_the_file_names_keep_the_margin_of_their_torque():
+    axes = "".join(AXIS.format(name) for name in "XY")
+    on = loads('format = 1\nname = "table"\nkinematics = "cartesian"\n' + axes)
+    trajectory = planned("G0 X40 Y25\nG1 X10 F6000\nG0 X0 Y0", on)
+    t = np.linspace(0, trajectory.duration, 4001)
+    uses = []
+    for index, row in enumerate(on.kinematics.matrix):
+        motor = drive(on, index)
+        assert motor is not None
+        velocity, acceleration = trajectory.velocity(t) @ row, trajectory.acceleration(t) @ row
+        free = np.abs(acceleration) > 0.0
+        assert (np.abs(acceleration[free]) <= motor.acceleration(velocity[free]) * (1 + 1e-6)).all()
+        uses.append(np.max(np.abs(acceleration[free]) / motor.acceleration(velocity[free])))
+    assert max(uses) > 0.95
