@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from trochia.analysis.identification import inverse_dynamics
 from trochia.machine.friction import Friction
 from trochia.machine.servo_plant import Amplifier, ServoPlant
 from trochia.servo import Loop, Pid, ServoAxis
@@ -67,3 +68,13 @@ def test_inverse_dynamics_as_feed_forward_leaves_less_than_a_250th(plain: np.nda
         bias=OFFSET / FORCE,
     ))  # fmt: skip
     assert np.sqrt(np.mean(plain**2)) / np.sqrt(np.mean(forward**2)) > 250
+
+
+def test_least_squares_finds_mass_and_friction_again() -> None:
+    wanted = np.tile(lap(), (2, 1))
+    samples = ServoAxis(PLANT, Loop(period=PERIOD, position=POSITION, speed=SPEED, limit=10.0)).run(wanted)
+    found = inverse_dynamics(samples.measured, samples.command * FORCE, PERIOD, rotary=False)
+    assert found["mass"] == pytest.approx(MASS, rel=0.005)
+    assert found["viscous"] == pytest.approx(VISCOUS, rel=0.02)
+    assert found["coulomb"] == pytest.approx(COULOMB, rel=0.02)
+    assert found["offset"] == pytest.approx(OFFSET, rel=0.02)
