@@ -14,6 +14,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trochia.kernels.layout import PHASE
+from trochia.planner.live.change import Ahead, change
+from trochia.planner.live.hold import hold
+from trochia.planner.live.portion import moved_on, states_at
 from trochia.planner.live.road import Place
 from trochia.planner.live.window import plan_window
 
@@ -41,11 +44,24 @@ class Lookahead:
         Those in hand (k,) of PHASE: t from the start of all motion, segments by the road's rows; they end at rest.
     safe
         How many of them are final.
+    stopped
+        Whether they end at rest because they were told to.
+
+    Parameters
+    ----------
+    start, t
+        Where and when motion begins.
+    rested
+        Whether the rest that stands before that place is over.
     """
 
-    def __init__(self, road: Road, rules: Rules, start: Place, t: float, speeds: Speeds) -> None:
+    def __init__(
+        self, road: Road, rules: Rules, start: Place, t: float, speeds: Speeds, *, rested: bool = False
+    ) -> None:
         self.road, self.rules, self.speeds = road, rules, speeds
-        self._start, self._begin = start, t
+        self.stopped = False
+        self._start, self._begin, self._rested = start, t, rested
+        self._feed = speeds.feed  # greatest that the phases in hand are planned for
         self._stop = rules.stopping_time
         self._span = FIRST
         self._end = self._reach(start.row, FIRST + SETTLE)
@@ -70,7 +86,7 @@ class Lookahead:
 
     def extend(self) -> bool:
         """Plan further until more is final; False when all is final already."""
-        if self.finished:
+        if self.finished or self.stopped:
             return False
         before = self.safe
         while self.safe == before and not self.finished:
@@ -79,6 +95,79 @@ class Lookahead:
             self._settle()
             self._span = min(2.0 * self._span, WINDOW)
         return True
+
+    def state(self, t: float) -> NDArray[Any]:
+        """Return the state of motion at an instant in hand (a row of PHASE)."""
+        self.reach(t)
+        return states_at(self.phases, np.array([t]))[0]
+
+    def rested_before(self, t: float) -> Place:
+        """Return where motion last began at rest before ``t``, or else where the motion in hand begins."""
+        standing = np.flatnonzero((self.phases["v"] == 0.0) & (self.phases["flags"] == 0) & (self.phases["t"] <= t))
+        first = self.phases[standing[-1] if len(standing) else 0]
+        return Place(int(first["segment"]), float(first["s"]))
+
+    def window_from(self, row: int) -> int:
+        """Return where a window that begins at a row ends."""
+        return self._reach(row, FIRST + SETTLE)
+
+    def passes(self, place: Place) -> float:
+        """Return when motion passes a place that is in hand [s]."""
+        return Ahead(self.road, self.phases, place).begin
+
+    def place_of_end(self) -> Place:
+        """Return where the motion in hand ends."""
+        last = self.phases[-1:]
+        end = moved_on(last, last["duration"], last["t"])[0]
+        length = float(self.road.segments["length"][int(end["segment"]) - self.road.base])
+        if float(end["s"]) >= length - 1e-9:
+            return Place(int(end["segment"]) + 1, 0.0)
+        return Place(int(end["segment"]), float(end["s"]))
+
+    def reach(self, t: float) -> None:
+        """Plan until the motion is final to ``t`` at least, or to its end."""
+        while self.safe_time < t and self.extend():
+            pass
+
+    def stop(self, t: float) -> None:
+        """Come to rest as soon as can be from ``t`` on; nothing is planned beyond."""
+        self.reach(t)
+        self.phases = hold(self.road, self.rules, self.phases, t, self._feed)
+        self.safe, self.stopped = len(self.phases), True
+
+    def change(self, t: float, speeds: Speeds) -> None:
+        """Go over to other speeds as soon as can be from ``t`` on."""
+        self.reach(t + FIRST * self._stop)
+        self._feed, self.speeds = max(self.speeds.feed, speeds.feed), speeds
+        self._span, old = FIRST, self.phases
+        row = int(states_at(old, np.array([t]))["segment"][0])
+        self._end = max(self._reach(row, 2.0 * FIRST + SETTLE), int(old["segment"][-1]) + 1)
+        if self.road.ended:
+            self._end = min(self._end, self.road.end)
+        while True:
+            led, rest = self._way_over(old, t)
+            self.phases, self.safe = np.concatenate([led, rest]), 0
+            self._settle(len(led))
+            if self.safe or self.finished:
+                return
+            self._end = self._reach(self._end, self._span)
+            self._span = min(2.0 * self._span, WINDOW)
+
+    def _way_over(self, old: NDArray[Any], t: float) -> tuple[NDArray[Any], NDArray[Any]]:
+        """Return the phases in hand up to where the plan for other speeds goes on, and what goes on."""
+        standing = np.flatnonzero((old["v"] == 0.0) & (old["flags"] == 0) & (old["t"] >= t))
+        until = float(old["t"][standing[0]]) if len(standing) else float(old["t"][-1] + old["duration"][-1])
+        joints = _joints(old)
+        behind = joints[old["t"][joints] <= t - WARM * self._stop]
+        start = Place(int(old["segment"][behind[-1]]), 0.0) if len(behind) else self._first()
+        found = change(self.road, self.rules, old, self._from(start, 0.0), t, feed=self._feed, until=until)
+        if found is not None:
+            return found
+        if not len(standing):
+            return old, self._from(Place(int(old["segment"][-1]) + 1, 0.0), until)
+        here = old[standing[0]]
+        fresh = self._from(Place(int(here["segment"]), float(here["s"])), 0.0)
+        return old[: standing[0]], _dated(fresh[fresh["flags"].argmin() :], until)
 
     def forget(self, t: float) -> int:
         """Drop phases that end before ``t`` and that no further window needs; return how many."""
@@ -104,8 +193,9 @@ class Lookahead:
             phases = plan_window(self.road, self.rules, start, self._end, self.speeds)
         else:
             phases = _still(self.road, start)
-        phases["t"] += t
-        return phases
+        if self._rested and start == self._start:
+            phases = phases[phases["flags"].argmin() :]
+        return _dated(phases, t)
 
     def _reach(self, row: int, times: float) -> int:
         """Return the row some (worst stopping) times after ``row`` at least, if all went at full speed."""
@@ -124,13 +214,13 @@ class Lookahead:
             road.more()  # whether the program ends here
         return end
 
-    def _settle(self) -> None:
-        """Find how many phases are final: up to the last joint that lies a settling time before the end."""
+    def _settle(self, least: int = 0) -> None:
+        """Find how many phases, ``least`` or none, are final: to the last joint a settling time before the end."""
         if self.finished:
             self.safe = len(self.phases)
             return
         joints = _joints(self.phases)
-        settled = self.phases["t"][joints] <= self.end_time - SETTLE * self._stop
+        settled = (self.phases["t"][joints] <= self.end_time - SETTLE * self._stop) & (joints >= least)
         if settled.any():
             self.safe = max(self.safe, int(joints[settled][-1]))
 
@@ -170,9 +260,7 @@ class Lookahead:
             here = self.phases[joint]
             k = at.get(int(here["segment"]))
             if k is not None and self._agree(here, new[k]):
-                rest = new[k:].copy()
-                rest["t"] += here["t"] - rest["t"][0]
-                self.phases = np.concatenate([self.phases[:joint], rest])
+                self.phases = np.concatenate([self.phases[:joint], _dated(new[k:], float(here["t"]))])
                 return True
         return False
 
@@ -181,6 +269,14 @@ class Lookahead:
             return False
         small = _SAME_ACCELERATION * float(self.rules.limits.acceleration.min())
         return not self.rules.jerk_limited or bool(abs(here["a"] - there["a"]) <= small)
+
+
+def _dated(phases: NDArray[Any], t: float) -> NDArray[Any]:
+    """Return phases begun at ``t``."""
+    phases = phases.copy()
+    if len(phases):
+        phases["t"] += t - phases["t"][0]
+    return phases
 
 
 def _joints(phases: NDArray[Any]) -> NDArray[np.intp]:
@@ -194,8 +290,10 @@ def _joints(phases: NDArray[Any]) -> NDArray[np.intp]:
 
 
 def _still(road: Road, start: Place) -> NDArray[Any]:
-    """Return the phases where nothing moves any more: a rest, or none."""
+    """Return the phases where nothing moves any more: one rest, be it of no time."""
     _, seconds = road.rests_between(start.row, road.end)
-    phases = np.zeros(1 if seconds.sum() > 0.0 else 0, dtype=PHASE)
+    phases = np.zeros(1, dtype=PHASE)
     phases["duration"], phases["flags"], phases["segment"] = seconds.sum(), 1, max(start.row - 1, 0)
+    if start.row > road.base:
+        phases["s"] = road.segments["length"][start.row - 1 - road.base]
     return phases

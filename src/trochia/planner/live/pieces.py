@@ -96,11 +96,12 @@ def reversed_path(
     rows: list[NDArray[Any]] = []
     coefficients: list[NDArray[np.float64]] = []
     at = 0
+    last, high = (last, high) if high > 0.0 or last == first else (last - 1, np.inf)
     for row in range(last, first - 1, -1):
         segment = segments[row : row + 1].copy()
         kind, data = int(segment["kind"][0]), int(segment["data"][0])
         from_s = low if row == first else 0.0
-        length = (high if row == last else float(segment["length"][0])) - from_s
+        length = min(high if row == last else np.inf, float(segment["length"][0])) - from_s
         if length <= 0.0:
             continue
         c = shifted(kind, pool[data : data + size_of(kind, axes)], axes, from_s)

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trochia.kernels import path as kernel
-from trochia.kernels.layout import SEGMENT
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -32,6 +31,8 @@ class Portion:
         Source line, and power of the beam or S of the spindle, of each segment (k,).
     phases
         (p,) of PHASE: t from the program's start, segments by the rows here.
+    backwards
+        Whether it backs up along the path; its segments then are those of the way back.
     """
 
     axes: str
@@ -41,26 +42,18 @@ class Portion:
     lines: NDArray[np.uint32]
     power: NDArray[np.float32]
     phases: NDArray[Any]
+    backwards: bool = False
 
     @classmethod
-    def of(cls, road: Road, phases: NDArray[Any]) -> Portion:
+    def of(cls, road: Road, phases: NDArray[Any], *, backwards: bool = False) -> Portion:
         """Return phases (of which there is at least one), counted by a road's rows, with what they need of it."""
-        if not len(road.segments):
-            return cls._standing(road, phases)
         first, end = int(phases["segment"][0]), int(phases["segment"][-1]) + 1
         segments, pool = road.slice(first, end)
         inside = slice(first - road.base, end - road.base)
         phases = phases.copy()
         phases["segment"] -= np.uint32(first)
         return cls(axes=road.axes, first=first, segments=segments, pool=pool, lines=road.lines[inside].copy(),
-                   power=road.power[inside].copy(), phases=phases)  # fmt: skip
-
-    @classmethod
-    def _standing(cls, road: Road, phases: NDArray[Any]) -> Portion:
-        """Return rests on a path on which nothing ever moves: a line of no length."""
-        return cls(axes=road.axes, first=0, segments=np.zeros(1, dtype=SEGMENT),
-                   pool=np.concatenate([road.start, np.zeros(len(road.axes))]), lines=np.zeros(1, dtype=np.uint32),
-                   power=np.zeros(1, dtype=np.float32), phases=phases)  # fmt: skip
+                   power=road.power[inside].copy(), phases=phases, backwards=backwards)  # fmt: skip
 
     @property
     def begin(self) -> float:
@@ -100,6 +93,19 @@ def states_at(phases: NDArray[Any], times: NDArray[np.float64]) -> NDArray[Any]:
     states = phases[rows]
     tau = np.clip(times - states["t"], 0.0, states["duration"])
     return moved_on(states, tau, times)
+
+
+def between(phases: NDArray[Any], begin: float, end: float) -> NDArray[Any]:
+    """Return the phases from one instant to another (k,); those under way then begin or end there."""
+    ends = phases["t"] + phases["duration"]
+    kept = phases[(ends > begin) & (phases["t"] < end)].copy()
+    if len(kept):
+        until = float(kept["t"][0] + kept["duration"][0])
+        at = max(begin, float(kept["t"][0]))
+        kept[:1] = states_at(kept[:1], np.array([at]))
+        kept["duration"][0] = until - at
+        kept["duration"][-1] = min(float(kept["duration"][-1]), end - float(kept["t"][-1]))
+    return kept
 
 
 def moved_on(states: NDArray[Any], tau: NDArray[np.float64], times: NDArray[np.float64]) -> NDArray[Any]:

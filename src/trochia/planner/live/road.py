@@ -88,17 +88,18 @@ class Road:
         self.rests: NDArray[np.int64] = np.zeros(0, dtype=np.int64)
         self.seconds: NDArray[np.float64] = np.zeros(0)
         self._source = stretches
+        self._still = 0
 
     @property
     def end(self) -> int:
-        """Number of the row after the last in hand."""
-        return self.base + len(self.segments)
+        """Number of the row after the last in hand; a road on which nothing moves has none, but a line of no length."""
+        return self.base + len(self.segments) - self._still
 
     def more(self) -> bool:
         """Take the next stretch; False when there is none."""
         stretch = next(self._source, None)
         if stretch is None:
-            self.ended = True
+            self._end_here()
             return False
         rows, end = stretch.segments, self.end
         self.start = stretch.start if end == 0 else self.start
@@ -114,6 +115,14 @@ class Road:
         self.rests = np.concatenate([self.rests, stretch.rests.astype(np.int64) + end])
         self.seconds = np.concatenate([self.seconds, stretch.seconds])
         return True
+
+    def _end_here(self) -> None:
+        self.ended = True
+        if not len(self.segments):
+            self._still = 1
+            self.segments = np.zeros(1, dtype=SEGMENT)
+            self.pool = np.concatenate([self.start, np.zeros(len(self.axes))])
+            self.lines, self.power = np.zeros(1, dtype=np.uint32), np.zeros(1, dtype=np.float32)
 
     def trim(self, row: int) -> None:
         """Drop the rows before ``row``, once they are half of what is in hand."""

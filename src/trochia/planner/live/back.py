@@ -1,0 +1,77 @@
+"""Backing up, so that motion passes a place again at speed.  In: a road, a place.  Out: where from, and the way."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from trochia.planner.live.change import Ahead
+from trochia.planner.live.pieces import reversed_path
+from trochia.planner.live.road import Place, Road, Stretch
+from trochia.planner.live.window import plan_window
+
+if TYPE_CHECKING:
+    from trochia.planner.live.lookahead import Lookahead
+    from trochia.planner.live.window import Speeds
+
+_LONGER = 1.5  #: a run-up that is too short is tried so much longer
+_AT_SPEED = 1.0 - 1e-9
+
+
+def run_up(ahead: Lookahead, t: float, speeds: Speeds) -> Place:
+    """Return where to begin at rest so that the place of ``t`` is passed as fast as ``t`` it was.
+
+    That is at the latest where motion last rested before, as far as that is in hand.
+    """
+    out = ahead.state(t)
+    place, v = Place(int(out["segment"]), float(out["s"])), float(out["v"])
+    earliest = ahead.rested_before(t)
+    end = ahead.window_from(place.row)
+    way = 0.5 * v * ahead.rules.stopping_time
+    while True:
+        start = behind(ahead.road, place, way)
+        if start <= earliest:
+            return earliest
+        phases = plan_window(ahead.road, ahead.rules, start, end, speeds)
+        view = Ahead(ahead.road, phases, place)
+        if view.state(view.begin)["v"] >= v * _AT_SPEED:
+            return start
+        way *= _LONGER
+
+
+def behind(road: Road, place: Place, way: float) -> Place:
+    """Return the place some way before another, at the earliest where the road in hand begins."""
+    row, s = place.row, place.s - way
+    while s < 0.0 and row > road.base:
+        row -= 1
+        s += float(road.segments["length"][row - road.base])
+    return Place(row, max(s, 0.0))
+
+
+def way_back(road: Road, start: Place, end: Place) -> Road | None:
+    """Return the road from a place back to an earlier one, its beam dark; None where they are the same."""
+    base = road.base
+    rows, pool = reversed_path(road.segments, road.pool, len(road.axes), (start.row - base, start.s),
+                               (end.row - base, end.s))  # fmt: skip
+    if not len(rows):
+        return None
+    first = start.row - base - (0 if start.s > 0.0 else 1)
+    lines = road.lines[first - len(rows) + 1 : first + 1][::-1]
+    none = np.zeros(0)
+    back = Road(road.axes, iter([Stretch(segments=rows, pool=pool, lines=lines.copy(),
+                                         power=np.zeros(len(rows), dtype=np.float32),
+                                         rests=none.astype(np.uint64), seconds=none, start=pool[:0])]))  # fmt: skip
+    back.more()
+    back.more()
+    return back
+
+
+def forward_of(start: Place, back: Road, place: Place, end: Place) -> Place:
+    """Return where a place on the way back from ``start`` to ``end`` lies on the road itself."""
+    if place.row >= back.end:
+        return end
+    first = start.row - (0 if start.s > 0.0 else 1)
+    row = first - place.row
+    from_s = end.s if row == end.row else 0.0
+    return Place(row, from_s + float(back.segments["length"][place.row]) - place.s)
