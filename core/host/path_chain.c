@@ -207,7 +207,7 @@ void trochia_emit_bent(trochia_reader *r, const trochia_link *link, const trochi
     double knots[4] = {start, fmin(first, last), fmax(first, last), end};
     for (int k = 0; k < 3; k++) {
         double from = knots[k], to = knots[k + 1], middle = 0.5 * (from + to);
-        if (to - from <= 1e-12 * h)
+        if (trochia_is_rounding(to - from, h))
             continue;
         int begins = turn->kind == TROCHIA_TURN_CORNER && middle < first;
         int ends = next->kind == TROCHIA_TURN_CORNER && middle > last;

@@ -57,7 +57,7 @@ trochia_segment *trochia_append(trochia_reader *r, double length, double speed, 
 /* What the joints have left of a curve; nothing at all where both blends meet. */
 void trochia_emit_curve(trochia_reader *r, const trochia_curve *curve, double cut, double length) {
     uint32_t n = r->frame.n;
-    if (length <= 1e-12 * curve->length)
+    if (trochia_is_rounding(length, curve->length))
         return;
     if (curve->kind == TROCHIA_CUBIC) {
         double c[36];

@@ -70,6 +70,12 @@ int32_t trochia_read_merged(trochia_reader *r, uint64_t *row, trochia_curve *cur
 
 trochia_segment *trochia_append(trochia_reader *r, double length, double speed, uint32_t move, uint8_t kind);
 
+/* Returns 1 where what is left of a curve is what rounding leaves when nothing is: blends that meet halfway. */
+static inline int trochia_is_rounding(double left, double length) {
+    double least = 1e-9 * length < 1e-10 ? 1e-9 * length : 1e-10;
+    return left <= least || left <= 1e-12 * length;
+}
+
 /* Appends `length` of a curve from `cut` on; nothing at all where both blends meet. */
 void trochia_emit_curve(trochia_reader *r, const trochia_curve *curve, double cut, double length);
 

@@ -13,6 +13,20 @@ static const double ARC_FINE =
     0.0175;                         /* rad: on wide arcs, where a piece is long enough to change speed in, 1 degree */
 static const double ARC_LONG = 2.0; /* mm: that long */
 static const double CUBIC_SAG = 0.02;
+/* rad: an even acceleration in a piece wastes about half of what turning takes more of at one end than at the other, in
+ * a chain of chords a part of the time that goes with their angle; at sharp corners there is no time to change speed */
+static const double CHORD_PART = 0.003;
+static const double CHORD_SHARP = 0.3;
+enum { CHORD_MOST = 8 };
+
+/* In how many parts a blend of turning little is looked at. */
+static double parts_of_bend(const double *c, uint32_t n, double length) {
+    double square = 0.0;
+    for (uint32_t i = 0; i < n; i++)
+        square += c[2 * n + i] * c[2 * n + i];
+    double turn = 2.0 * length * sqrt(square);
+    return turn < CHORD_SHARP ? fmin(ceil(turn / CHORD_PART), CHORD_MOST) : 1.0;
+}
 
 uint32_t trochia_span_parts(const trochia_segment *segment, const double *pool, uint32_t n) {
     const double *c = pool + segment->data;
@@ -25,7 +39,8 @@ uint32_t trochia_span_parts(const trochia_segment *segment, const double *pool, 
         double third = 0.0;
         for (uint32_t i = 0; i < n; i++)
             third = fmax(third, fabs(6.0 * c[3 * n + i]));
-        parts = fmin(16.0, ceil(length * sqrt(third * 5.0 / (8.0 * CUBIC_SAG))));
+        parts = third > 0.0 ? fmin(16.0, ceil(length * sqrt(third * 5.0 / (8.0 * CUBIC_SAG))))
+                            : parts_of_bend(c, n, length);
     }
     return (uint32_t)fmin(fmax(parts, 1.0), 4e9);
 }
@@ -89,10 +104,10 @@ static void load_plain_line(const trochia_segment *segment, const double *direct
 }
 
 static void load_plain_parabola(const trochia_segment *segment, const double *c, const trochia_bounds *bounds,
-                                trochia_span *span) {
-    double slowness = 0.0, held = 0.0, length = segment->length;
+                                uint32_t part, uint32_t parts, trochia_span *span) {
+    double slowness = 0.0, held = 0.0, length = segment->length / parts, from = length * part;
     for (int i = 0; i < 3; i++) {
-        double k = 2.0 * c[6 + i], t0 = c[3 + i], t1 = t0 + k * length, effort = bounds->effort[i];
+        double k = 2.0 * c[6 + i], t0 = c[3 + i] + k * from, t1 = t0 + k * length, effort = bounds->effort[i];
         span->t[0][i] = t0 * effort;
         span->t[1][i] = t1 * effort;
         span->k[0][i] = k * effort;
@@ -289,7 +304,7 @@ void trochia_span_load(const trochia_segment *segment, const double *pool, const
         else
             load_line(segment, c + bounds->limits->axes, bounds, span);
     } else if (bounds->plain && segment->kind == TROCHIA_CUBIC && c[9] == 0.0 && c[10] == 0.0 && c[11] == 0.0)
-        load_plain_parabola(segment, c, bounds, span);
+        load_plain_parabola(segment, c, bounds, part, parts, span);
     else if (bounds->plain && segment->kind == TROCHIA_ARC_SEGMENT && c[5] == 0.0 && c[12] == 0.0)
         load_plain_arc(segment, c, bounds, part, parts, span);
     else
