@@ -62,7 +62,7 @@ def torque_use(plan: Plan) -> dict[str, TorqueUse]:
     drives = {i: found for i in range(len(plan.machine.joints)) if (found := drive(plan.machine, i)) is not None}
     worst: dict[int, TorqueUse] = {}
     if drives:
-        for block in _blocks(plan):
+        for block in samples_of(plan):
             for i, motor in drives.items():
                 name = plan.machine.joints[i].name
                 worst[i] = _worse(worst.get(i), _use(name, motor, plan.machine.kinematics.matrix[i], block))
@@ -94,7 +94,7 @@ def _problem(plan: Plan, use: TorqueUse) -> Problem:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Block:
+class Samples:
     """Samples of a plan: times (n,), velocities and accelerations of the axes (n, axes), source lines (n,)."""
 
     t: NDArray[np.float64]
@@ -103,8 +103,8 @@ class _Block:
     line: NDArray[np.uint32]
 
 
-def _blocks(plan: Plan) -> Iterator[_Block]:
-    """Yield the samples of a plan, block by block."""
+def samples_of(plan: Plan) -> Iterator[Samples]:
+    """Yield the samples of a plan, block by block, in the middle of even steps of time."""
     motion, duration = plan.trajectory, plan.time_s
     step = plan.machine.servo_period * max(1.0, duration / plan.machine.servo_period / MOST)
     samples = math.ceil(duration / step)
@@ -113,10 +113,10 @@ def _blocks(plan: Plan) -> Iterator[_Block]:
         t = (np.arange(first, min(first + BLOCK, samples), dtype=np.float64) + 0.5) * step
         t = np.minimum(t, duration)
         lines = np.asarray(motion.line_at(t), np.uint32)
-        yield _Block(t=t, velocity=motion.velocity(t), acceleration=motion.acceleration(t), line=lines)
+        yield Samples(t=t, velocity=motion.velocity(t), acceleration=motion.acceleration(t), line=lines)
 
 
-def _use(name: str, motor: Drive, row: NDArray[np.float64], block: _Block) -> TorqueUse:
+def _use(name: str, motor: Drive, row: NDArray[np.float64], block: Samples) -> TorqueUse:
     """Return a joint's use in one block."""
     velocity, acceleration = block.velocity @ row, block.acceleration @ row
     used = motor.used(velocity, acceleration)

@@ -20,6 +20,7 @@ COMMANDS = {
     "simulate": "Run a program on the digital twin: recording and report.",
     "interpolate": "Compare the classic interpolators on a line or an arc.",
     "profile": "A stepper's velocity profile, step by step, and whether it will do.",
+    "sweep": "A stepper's torque-speed curve behind its driver, with a program's operating points.",
     "machine": "New, show, check, import: machine files.",
 }
 

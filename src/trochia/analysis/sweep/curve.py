@@ -1,0 +1,182 @@
+"""The torque-speed curve of a motor behind its driver, with what limits it.
+
+In: a motor behind its driver, its load.  Out: :class:`Curve`, by closed forms, measured on the twin where asked.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from trochia.analysis.stability import growth_rate
+from trochia.analysis.sweep.procedures import (
+    pull_in_torque,
+    pull_out_speed,
+    pull_out_torque_measured,
+    start_stop_speed_measured,
+)
+from trochia.errors import LimitError
+from trochia.machine.motors.curves import start_stop_speed
+from trochia.machine.motors.hybrid import FREE
+from trochia.machine.motors.shaft import ShaftLoad
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from trochia.analysis.sweep.timing import Timing
+    from trochia.machine.drivers import Fed
+
+    Floats = NDArray[np.float64]
+
+FALLEN = 0.2  #: part of the holding torque at which a curve without a speed given ends
+RPM = 30.0 / math.pi
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Curve:
+    """Torque over speed.
+
+    Attributes
+    ----------
+    speeds, pull_out
+        Of the shaft (n,) [rad/s]; torque by closed form, the motor's own frictions taken off (n,) [N·m].
+    measured, pull_in
+        On the twin (n,) [N·m], or None where nobody asked.
+    growth
+        Growth rate of a small disturbance (n,) [1/s]: above zero a voltage-fed motor does not run steadily; NaN where a
+        current controller feeds it (no such instability) or it does not run.
+    resonance
+        Frequency of small swings at rest, full current [Hz].
+    start_stop
+        By the estimate of energy [rad/s]; 0: it does not start.
+    limits
+        Measured on the twin: ``pull_out`` and ``start_stop`` speeds [rad/s]; empty where nobody asked.
+    """
+
+    made: Fed
+    load: ShaftLoad
+    speeds: Floats
+    pull_out: Floats
+    measured: Floats | None
+    pull_in: Floats | None
+    growth: Floats
+    resonance: float
+    start_stop: float
+    limits: dict[str, float]
+
+    def unstable(self) -> list[tuple[float, float]]:
+        """Return the bands of speed in which a small disturbance grows [rad/s]."""
+        grows = np.concatenate([[False], self.growth > 0, [False]])
+        begins, ends = np.flatnonzero(~grows[:-1] & grows[1:]), np.flatnonzero(grows[:-1] & ~grows[1:]) - 1
+        return [(float(self.speeds[a]), float(self.speeds[b])) for a, b in zip(begins, ends, strict=True)]
+
+    def figures(self) -> dict[str, Any]:
+        """Return what ``trochia sweep --json`` prints of a curve."""
+        full = self.made.motor.full_steps / math.tau
+        columns = {"pull_out_Nm": self.pull_out, "measured_Nm": self.measured, "pull_in_Nm": self.pull_in}
+        rows = [
+            {"speed_rpm": speed * RPM, "speed_steps_s": speed * full}
+            | {name: None if values is None else float(values[i]) for name, values in columns.items()}
+            for i, speed in enumerate(self.speeds.tolist())
+        ]
+        corner, fastest = self.made.corner, self.made.fastest(self.load)
+        return {
+            "holding_torque_Nm": self.made.holding,
+            "current_A": self.made.current,
+            "corner_rpm": None if corner is None else corner * RPM,
+            "fastest_rpm": None if math.isinf(fastest) else fastest * RPM,
+            "resonance_Hz": self.resonance,
+            "start_stop_rpm": self.start_stop * RPM,
+            "unstable_rpm": [[low * RPM, high * RPM] for low, high in self.unstable()],
+            "limits_rpm": {name: None if math.isinf(v) else v * RPM for name, v in self.limits.items()},
+            "curve": rows,
+        }
+
+
+def curve(
+    made: Fed,
+    load: ShaftLoad = FREE,
+    *,
+    top: float | None = None,
+    points: int = 40,
+    measure: bool = False,
+    timing: Timing | None = None,
+    progress: Callable[[str, float], None] | None = None,
+) -> Curve:
+    """Return the curve of a motor behind its driver.
+
+    Parameters
+    ----------
+    load
+        Its inertia, friction and constant torque count in what starts and in what is measured.
+    top
+        Greatest speed [rad/s]; without it where the torque has fallen to a fifth of its value at rest.
+    measure
+        Also measure pull-out and pull-in torques on the twin.
+    timing
+        Also search the pull-out and start/stop speeds on the twin, with pulses timed so, in steps of 1 rpm.
+    """
+    end = _end(made) if top is None else top
+    speeds = np.linspace(end / points, end, points)
+    torque = made.pull_out(speeds)
+    measured = pull_in = None
+    if measure:
+        measured, pull_in = np.zeros(points), np.zeros(points)
+        bare = ShaftLoad(inertia=load.inertia, friction=load.friction, viscous=load.viscous)
+        for i, speed in enumerate(speeds.tolist()):
+            if progress is not None:
+                progress("measuring", i / points)
+            measured[i] = pull_out_torque_measured(made, speed, bare) if torque[i] > 0 else 0.0
+            pull_in[i] = pull_in_torque(made, speed, bare)
+    return Curve(
+        made=made,
+        load=load,
+        speeds=speeds,
+        pull_out=torque,
+        measured=measured,
+        pull_in=pull_in,
+        growth=np.array([_growth(made, speed, load) for speed in speeds.tolist()]),
+        resonance=math.sqrt(made.motor.teeth * made.holding / (made.motor.inertia + load.inertia)) / math.tau,
+        start_stop=_start_stop(made, load),
+        limits={} if timing is None else _limits(made, load, end, timing),
+    )
+
+
+def _end(made: Fed) -> float:
+    """Return the speed at which the torque has fallen to a fifth."""
+    least = FALLEN * float(made.pull_out(np.array(0.0)))
+    high = 1.0
+    while float(made.pull_out(np.array(high))) > least and high < 1e4:
+        high *= 1.05
+    return high
+
+
+def _growth(made: Fed, speed: float, load: ShaftLoad) -> float:
+    """Return the growth rate of a voltage-fed motor; NaN where there is none to tell."""
+    if made.chopper is not None:
+        return math.nan
+    try:
+        return growth_rate(made.motor, speed, made.amplitude, load)
+    except LimitError:
+        return math.nan
+
+
+def _start_stop(made: Fed, load: ShaftLoad) -> float:
+    try:
+        return start_stop_speed(made.motor, made.holding, load=load, step_angle=made.excitation.step_angle)
+    except LimitError:
+        return 0.0
+
+
+def _limits(made: Fed, load: ShaftLoad, end: float, timing: Timing) -> dict[str, float]:
+    """Return the speeds at which steps are first lost, in steps of 1 rpm from 20 rpm on."""
+    speeds = (np.arange(20.0, 2 * end * RPM) / RPM).tolist()
+    return {
+        "pull_out": pull_out_speed(made, speeds, load, timing),
+        "start_stop": start_stop_speed_measured(made, speeds, load, timing),
+    }

@@ -1,0 +1,151 @@
+"""Measuring a stepper on the twin, as one measures a real one.
+
+In: a motor behind its driver, its load, how pulses are timed.  Out: speeds [rad/s] and torques [N·m] where it first
+loses steps.
+
+- pull-out speed: from rest, a turn at each speed, then faster, without a stop (S1-F04, sketch 06)
+- start/stop speed: a turn at each speed from rest, released and at rest in between (S1-F04, sketch 07)
+- pull-out torque: run at a known speed, raise the load until synchronism is lost; three times, the mean (S1-F07)
+- pull-in torque: the greatest load under which it starts at a speed from rest
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from trochia.analysis.sweep.timing import TIMINGS, Timing
+from trochia.backends.driven_stepper import DrivenStepper, Levels
+from trochia.backends.stepper_twin import STEP
+from trochia.machine.motors.hybrid import FREE
+from trochia.machine.motors.shaft import CREEP, ShaftLoad
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import NDArray
+
+    from trochia.machine.drivers import Fed
+
+EXACT = TIMINGS["exact"]
+LOOK = 2e-3  #: the rotor is looked at as often [s]
+SETTLE = 0.1  #: at rest before a run [s]
+HOLD = 0.05  #: at a load before it is raised [s]
+COARSE, FINE = 0.05, 0.005  #: rises of the load, parts of the torque expected
+REPEATS = 3
+_MEAN = Levels(threshold=math.inf)
+
+
+def twin_of(made: Fed, load: ShaftLoad, levels: Levels = _MEAN) -> DrivenStepper:
+    """Return a motor at rest, its tick short enough for its friction."""
+    drag = (made.motor.friction + load.friction) / CREEP + made.motor.viscous + load.viscous
+    inertia = made.motor.inertia + load.inertia
+    shortest = min(made.motor.time_constant, inertia / drag if drag else math.inf)
+    return DrivenStepper(made, load, levels=levels, tick=min(STEP, 0.4 * shortest))
+
+
+def pull_out_speed(
+    made: Fed, speeds: Iterable[float], load: ShaftLoad = FREE, timing: Timing = EXACT, *, turns: float = 1.0
+) -> float:
+    """Return the first of some rising speeds [rad/s] at which steps are lost; infinite where none are.
+
+    Each speed is held for ``turns``, the next follows without a stop.
+    """
+    twin = twin_of(made, load)
+    twin.run(SETTLE)
+    for speed in speeds:
+        if _turn(twin, made, speed, timing, turns):
+            return speed
+    return math.inf
+
+
+def start_stop_speed_measured(
+    made: Fed, speeds: Iterable[float], load: ShaftLoad = FREE, timing: Timing = EXACT, *, turns: float = 1.0
+) -> float:
+    """Return the first of some rising speeds [rad/s] that costs steps when started from rest and stopped at once."""
+    for speed in speeds:
+        twin = twin_of(made, load)
+        twin.run(SETTLE)
+        if _turn(twin, made, speed, timing, turns):
+            return speed
+        if twin.run(3 * SETTLE).lost_steps[-1]:
+            return speed
+    return math.inf
+
+
+def _turn(twin: DrivenStepper, made: Fed, speed: float, timing: Timing, turns: float) -> bool:
+    """Play some turns at a speed, and tell whether the rotor has lost steps at their end."""
+    rate = made.motor.full_steps * made.excitation.steps_per_full_step
+    times = twin.now + timing.times(math.tau / speed / rate, round(turns * rate))
+    twin.queue(times[:-1])
+    run = twin.run(times[-1] - twin.now, every=100)
+    return bool(len(run.lost_steps) and abs(run.lost_steps[-1]) >= 4)
+
+
+def pull_out_torque_measured(
+    made: Fed, speed: float, load: ShaftLoad = FREE, *, repeats: int = REPEATS, levels: Levels = _MEAN
+) -> float:
+    """Return the greatest constant load carried at a speed [N·m]: the mean of some tries; 0 where it gets none.
+
+    The load rises in steps of 1/200 of the torque expected; a try begins a third of a step higher than the one before.
+    """
+    expected = max(float(made.pull_out(np.array(speed), load)), 0.02 * made.holding)
+    twins = [twin_of(made, load, levels) for _ in range(repeats)]
+    found = [_one_pull_out(twin, speed, load, expected, i / repeats) for i, twin in enumerate(twins)]
+    return sum(found) / repeats
+
+
+def _one_pull_out(twin: DrivenStepper, speed: float, load: ShaftLoad, expected: float, share: float) -> float:
+    """Return the last load carried in one try."""
+    made = twin.made
+    twin.run(SETTLE)
+    rise = 0.3 * expected / (made.motor.inertia + load.inertia)
+    steps = made.motor.full_steps * made.excitation.steps_per_full_step / math.tau  # a radian
+    ramp = speed / rise
+    seconds = ramp + HOLD * (2.0 / COARSE + 1.2 / FINE)
+    times = twin.now + _ramp(speed * steps, rise * steps, seconds)
+    twin.queue(times)
+    twin.run(ramp + 4 * HOLD, every=50)
+    carried, torque, step = 0.0, share * FINE * expected, COARSE
+    while torque < 1.5 * expected:
+        twin.set_load(_with(load, torque))
+        run = twin.run(HOLD, every=50)
+        if np.abs(run.lost_steps).max(initial=0) >= 4:
+            break
+        carried = torque
+        step = FINE if torque > 0.8 * expected else COARSE
+        torque += step * expected
+    return carried
+
+
+def _ramp(rate: float, acceleration: float, seconds: float) -> NDArray[np.float64]:
+    """Return the pulses of an even rise to a rate [1/s], held until ``seconds`` (pulses,) [s]."""
+    rise = rate * rate / (2 * acceleration)
+    n = np.arange(1.0, rise + rate * max(seconds - rate / acceleration, 0.0))
+    return np.where(n < rise, np.sqrt(2 * n / acceleration), rate / acceleration + (n - rise) / rate)
+
+
+def pull_in_torque(made: Fed, speed: float, load: ShaftLoad = FREE, *, halvings: int = 7) -> float:
+    """Return the greatest constant load under which it starts at a speed from rest [N·m]; 0 where it does not."""
+
+    def starts(torque: float) -> bool:
+        twin = twin_of(made, _with(load, torque))
+        twin.run(SETTLE)
+        return not _turn(twin, made, speed, EXACT, max(0.25, speed * 0.2 / math.tau))
+
+    if not starts(0.0):
+        return 0.0
+    low, high = 0.0, made.holding
+    for _ in range(halvings):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if starts(middle) else (low, middle)
+    return low
+
+
+def _with(load: ShaftLoad, torque: float) -> ShaftLoad:
+    """Return a load with a constant torque besides its own."""
+    return ShaftLoad(
+        inertia=load.inertia, friction=load.friction, viscous=load.viscous, constant=load.constant + torque
+    )

@@ -1,0 +1,153 @@
+"""A motor, its driver and its load from the command line: by their numbers, or from a joint of a machine file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from trochia import units
+from trochia.errors import ConfigError, UnitError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from trochia.machine.drivers import Driver, Fed
+    from trochia.machine.machine import Machine
+    from trochia.machine.motors import ShaftLoad
+    from trochia.machine.torque import Drive
+
+_KINDS = ("h-bridge", "l/r", "chopper")  # those of `machine.drivers.DRIVERS`
+_OPTIONS = (
+    click.option("-m", "--machine", "machine_name", metavar="MACHINE", help="Machine file, with motor and driver."),
+    click.option("--joint", metavar="NAME", help="Its joint; without it the first that names motor and driver."),
+    click.option("--motor", metavar="NAME", help="A motor of the library, in place of a machine."),
+    click.option("--driver", type=click.Choice(_KINDS), help="What feeds it; chopper where a current is given."),
+    click.option("--supply", metavar="VOLTAGE", help='Of the driver, "24 V".'),
+    click.option("--current", metavar="CURRENT", help='Of a chopper, "2 A".'),
+    click.option("--series", metavar="RESISTANCE", help='Of an l/r drive, "10 ohm".'),
+    click.option("--excitation", metavar="NAME", help="one-phase, two-phase, half-step, microstep-N; 16 microsteps "
+                 "behind a chopper, else two-phase, if not given."),
+    click.option("--wiring", type=click.Choice(("unipolar", "series", "parallel")), help="Of half windings."),
+    click.option("--inertia", metavar="J", help='Of the load, "50 g·cm²".'),
+    click.option("--friction", metavar="TORQUE", help='Of the load, "10 mN·m".'),
+    click.option("--load-torque", metavar="TORQUE", help='Constant, as of a weight, "0.1 N·m".'),
+)  # fmt: skip
+
+
+def motor_options(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Add the options, in their order."""
+    for decorate in reversed(_OPTIONS):
+        function = decorate(function)
+    return function
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Asked:
+    """A motor behind its driver, its load, and where they come from.
+
+    Attributes
+    ----------
+    margin
+        Part of the torque that planning leaves unused; 0 without a machine.
+    machine, joint, drive
+        Where the motor is one of a machine.
+    """
+
+    made: Fed
+    load: ShaftLoad
+    title: str
+    margin: float = 0.0
+    machine: Machine | None = None
+    joint: int = 0
+    drive: Drive | None = None
+
+
+def asked(given: dict[str, Any]) -> Asked:
+    """Return what the options say.
+
+    Raises
+    ------
+    click.BadParameter, click.UsageError
+        For options that do not make a motor behind a driver.
+    ConfigError
+        For numbers that do not fit together.
+    """
+    if (given["machine_name"] is None) == (given["motor"] is None):
+        raise click.UsageError("Give a machine (-m) or a motor (--motor), one of them.")
+    return _of_machine(given) if given["motor"] is None else _of_motor(given)
+
+
+def _of_machine(given: dict[str, Any]) -> Asked:
+    """Return a joint's motor."""
+    from trochia import api  # noqa: PLC0415 - `trochia --help` must stay light
+    from trochia.machine.torque import drive  # noqa: PLC0415
+
+    machine = api.load(given["machine_name"])
+    names = [joint.name for joint in machine.joints]
+    name = given["joint"]
+    if name is not None and name not in names:
+        raise click.BadParameter(f"{machine.name} has no joint {name!r}; it has {', '.join(names)}",
+                                 param_hint="--joint")  # fmt: skip
+    for i, joint in enumerate(machine.joints):
+        found = drive(machine, i) if name in {None, joint.name} else None
+        if found is not None:
+            title = f"{machine.name}, joint {joint.name}"
+            return Asked(made=found.made, load=found.load, title=title, margin=found.margin, machine=machine, joint=i,
+                         drive=found)  # fmt: skip
+    of = f"joint {name}" if name else "no joint"
+    raise ConfigError(
+        f"{machine.name}: {of} {'does not name' if name else 'names'} a motor and a driver",
+        hint='Give the joint motor = { kind = "stepper", library = "…" } and driver = { kind = "chopper", … }.',
+    )
+
+
+def _of_motor(given: dict[str, Any]) -> Asked:
+    """Return a motor of the library behind the driver given."""
+    from trochia.machine.drivers import fed  # noqa: PLC0415 - `trochia --help` must stay light
+    from trochia.machine.motors import ShaftLoad, motor  # noqa: PLC0415
+    from trochia.machine.motors.excitation import excitation  # noqa: PLC0415
+    from trochia.machine.motors.wiring import wired  # noqa: PLC0415
+
+    row = motor(given["motor"])
+    driver = _driver(given)
+    name = given["excitation"] or ("microstep-16" if driver.kind == "chopper" else "two-phase")
+    made = fed(wired(row.parameters(), given["wiring"]), driver, excitation(name).steps_per_full_step)
+    load = ShaftLoad(
+        inertia=_number(given, "inertia", "inertia") or 0.0,
+        friction=_number(given, "friction", "torque") or 0.0,
+        constant=_number(given, "load_torque", "torque") or 0.0,
+    )
+    return Asked(made=made, load=load, title=f"{given['motor']}, {driver.kind} at {driver.supply:g} V")
+
+
+def _driver(given: dict[str, Any]) -> Driver:
+    """Return the driver that the options name."""
+    from trochia.machine.drivers import Chopper, HBridge, SeriesResistor  # noqa: PLC0415 - as above
+
+    supply, current = _number(given, "supply", "voltage"), _number(given, "current", "current")
+    series = _number(given, "series", "resistance")
+    kind = given["driver"] or ("chopper" if current else "l/r" if series else "h-bridge")
+    if supply is None:
+        raise click.UsageError('A driver needs a supply, like --supply "24 V".')
+    mode = given["excitation"] or ("microstep-16" if kind == "chopper" else "two-phase")
+    if kind == "chopper":
+        if current is None:
+            raise click.UsageError('A chopper needs its current, like --current "2 A".')
+        return Chopper(supply=supply, current=current, excitation=mode)
+    if kind == "l/r":
+        if series is None:
+            raise click.UsageError('An l/r drive needs its resistor, like --series "10 ohm".')
+        return SeriesResistor(supply=supply, series=series, excitation=mode)
+    return HBridge(supply=supply, excitation=mode)
+
+
+def _number(given: dict[str, Any], name: str, dimension: str) -> float | None:
+    """Return an option's quantity in its base unit, or None where it is not given."""
+    if given[name] is None:
+        return None
+    try:
+        return units.parse(given[name], dimension)
+    except UnitError as error:
+        raise click.BadParameter(error.message, param_hint="--" + name.replace("_", "-")) from error
