@@ -107,6 +107,7 @@ class TwinOutput:
     def _hand_over(self) -> None:
         """Queue what is waiting."""
         if self._moments:
-            self.twin.queue(np.array(self._moments), self._directions[0])
+            # the twin's clock is rounded to its time steps, so it may stand a hair past a moment
+            self.twin.queue(np.maximum(self._moments, self.twin.now), self._directions[0])
             self._moments.clear()
             self._directions.clear()

@@ -1,0 +1,26 @@
+"""Sketch 1: turn clockwise for ever, one phase on, 20 rpm, on port 2.
+
+Mended: nothing but the power switch stops the original; here ``q`` does, and the winding is released.
+"""
+
+from terminal import SwitchedOffError, Terminal, run
+
+from trochia.stepper import FORWARD, SINGLE
+
+
+def sketch(terminal: Terminal) -> None:
+    """Run it."""
+    motor = terminal.shield.motor(2, whole_milliseconds=not terminal.options.exact)
+    motor.set_speed(20)
+    turns = 0
+    try:
+        while True:
+            motor.step(200, FORWARD, SINGLE)
+            turns += 1
+            terminal.say(f"{turns} turns")
+    except SwitchedOffError:
+        motor.release()
+        raise
+
+
+run(sketch, __doc__)
