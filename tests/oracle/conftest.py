@@ -33,7 +33,7 @@ class Run:
     why: str
 
 
-def reference(text: bytes, variables: str | None = None, tools: str | None = None) -> Run:
+def reference(text: bytes, variables: str | None = None, tools: str | None = None, *, seconds: float = 20.0) -> Run:
     """Return what ``rs274 -g`` says.
 
     It rewrites its variable file and keeps its tools in a file in HOME, so it runs with a directory of its own as both.
@@ -54,7 +54,7 @@ def reference(text: bytes, variables: str | None = None, tools: str | None = Non
                 cwd=folder,
                 env={**os.environ, "HOME": folder},
                 capture_output=True,
-                timeout=20,
+                timeout=seconds,
                 check=False,
             )
             said = [line for line in done.stderr.decode("latin-1").split("\n") if not line.startswith(_ASIDE)]
@@ -86,10 +86,11 @@ def alike(left: str, right: str) -> bool:
 
 
 def compare(
-    text: bytes, *, variables: str | None = None, tools: str | None = None, work: WorkState | None = None
-) -> None:
+    text: bytes, *, variables: str | None = None, tools: str | None = None, work: WorkState | None = None,
+    seconds: float = 20.0,
+) -> None:  # fmt: skip
     """Assert that we accept or reject a program as the reference does, at the same line, with the same output."""
-    judge = reference(text, variables, tools)
+    judge = reference(text, variables, tools, seconds=seconds)
     for fast in (False, True):
         run = ours(text, fast=fast, work=work or WorkState())
         for number, (theirs, mine) in enumerate(zip(judge.lines, run.lines, strict=False)):
@@ -113,3 +114,16 @@ def agree():
     if RS274 is None:
         pytest.skip("LinuxCNC's rs274 is not installed (Debian package linuxcnc-uspace)")
     return compare
+
+
+@pytest.fixture(scope="session")
+def agree_or_hang(agree):
+    """Return :func:`compare` for what the reference may never come to the end of; then only ours must."""
+
+    def check(text: bytes) -> None:
+        try:
+            agree(text, seconds=1.0)
+        except subprocess.TimeoutExpired:
+            ours(text, fast=True, work=WorkState())
+
+    return check

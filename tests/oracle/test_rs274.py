@@ -26,6 +26,16 @@ SAMPLES = sorted((HERE.parents[1] / "programs").glob("*.ngc"))
 
 # Programs the reference takes although they are at fault, or the other way round, each with its reason.
 DIFFERENCES = {
+    "error-turning-narrow": "the reference dies of a D that a groove has no room for",
+    "error-turning-no-depth": "said on the line of the cycle; the reference draws the profile first",
+    "error-turning-not-whole": "the reference names a line that does not exist: O1.500000 CALL",
+    "error-turning-too-many-passes": "the reference has no bound",
+    "error-turning-with-stop": "the reference forgets the stop",
+    "error-turning-y": "the reference does not look at Y",
+    "error-profile-other-code": "the reference takes the axis words of any code for a line",
+    "error-profile-arc-radii-differ": "said on the line of the arc; the reference cuts up to it first",
+    "error-profile-arc-too-short": "said on the line of the arc; the reference calls its profile not monotonic",
+    "error-profile-fillet-too-large": "said on the line of the corner; the reference calls its profile not monotonic",
     "error-thread-cycle-slide-too-steep": "a slide at 90 degrees sends the reference to the end of the world",
     "error-binary": "the reference reads a line up to its NUL byte; a binary file is refused whole",
     "branches": "after a BREAK out of a WHILE the reference leaves the next DO loop after its first round",

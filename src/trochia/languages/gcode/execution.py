@@ -23,6 +23,9 @@ if TYPE_CHECKING:
     from trochia.languages.gcode.sink import Sink
     from trochia.languages.gcode.state import State
 
+_PASSING = ("G70", "G71", "G72")  # motion codes that are not in force on the next line
+_FEED = 10  # G1 in tenths
+
 
 def execute(block: Block, state: State, sink: Sink) -> None:
     """Let the parts of a checked line act in the order of execution."""
@@ -65,7 +68,8 @@ def pretend_done(block: Block | None, state: State) -> None:
     if block.is_polar:
         state.position[0] = state.position[0] or 1.0  # the origin has no angle
     if "motion" in block.groups and block.motion is not None:
-        state.motion = key_of(float(block.motion.name[1:]))
+        name = block.motion.name
+        state.motion = _FEED if name.startswith(_PASSING) else key_of(float(name[1:]))
     elif block.has_target and state.motion == NO_MOTION:
         state.motion = 0
     for word in ("r", "depth", "initial"):  # a cycle that was refused may lack what its next line takes from it

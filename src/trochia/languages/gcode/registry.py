@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from trochia.languages.gcode.cycles import bore, drill, tap, thread
+from trochia.languages.gcode.cycles import bore, drill, tap, thread, turning
 from trochia.languages.gcode.groups import (
     arcs,
     compensation,
@@ -58,12 +58,12 @@ ORDER = (
     "dwell",
     "plane",
     "length units",
+    "diameter mode",
     "compensation",
     "tool length",
     "coordinate system",
     "path control",
     "distance",
-    "diameter mode",
     "arc distance",
     "retract",
     "non-modal",
@@ -95,6 +95,7 @@ G_CODES: dict[int, Code] = {
     **tap.G_CODES,
     **bore.G_CODES,
     **thread.G_CODES,
+    **turning.G_CODES,
     **synchronised.G_CODES,
     **probing.G_CODES,
     **diameter.G_CODES,

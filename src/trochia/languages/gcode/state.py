@@ -17,6 +17,7 @@ from trochia.program.tools import NO_TOOL, Tool
 
 if TYPE_CHECKING:
     from trochia.languages.gcode.compensator import Compensator
+    from trochia.languages.gcode.cycles.profile import Profile
     from trochia.languages.gcode.groups.saved_modes import Modes
     from trochia.program.work import WorkState
 
@@ -75,6 +76,8 @@ class State:
         Points of G28 and G30, machine coordinates [mm].
     compensation
         Moves the tool's centre while G41 or G42 is in force.
+    profile
+        What a lathe cycle's subroutine draws, while it runs.
     straight_next
         The next move must be straight, because cutter compensation has ended.
     tolerance, tolerance_along
@@ -143,6 +146,7 @@ class State:
     flood: bool = False
     ended: bool = False
     compensation: Compensator | None = None
+    profile: Profile | None = None
     straight_next: bool = False
 
     @property

@@ -10,8 +10,9 @@ import re
 from typing import TYPE_CHECKING
 
 from trochia.errors import ParseError, ProgramError
-from trochia.languages.gcode.block import sort_words
+from trochia.languages.gcode.block import Block, sort_words
 from trochia.languages.gcode.check import check
+from trochia.languages.gcode.cycles.turning import finish
 from trochia.languages.gcode.execution import execute, pretend_done
 from trochia.languages.gcode.fast import FastPath
 from trochia.languages.gcode.flow import Flow
@@ -25,7 +26,7 @@ from trochia.languages.gcode.texts import Cursor, Mark, next_line
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from trochia.languages.gcode.block import Block
+    from trochia.languages.gcode.cycles.profile import Profile
     from trochia.languages.gcode.sink import Sink
     from trochia.languages.gcode.state import State
     from trochia.languages.gcode.template import Template
@@ -101,7 +102,7 @@ class Walk:
         """Let the C core take plain lines; return whether it took one."""
         cursor, looping = self._cursor, self._flow.turning is not None
         text, offset, line = cursor.mark()
-        if self._flow.skipping is not None or not self._opened:
+        if self._flow.skipping is not None or not self._opened or self._state.profile is not None:
             return False
         if self._wait and not looping:
             self._wait -= 1
@@ -237,6 +238,9 @@ class Walk:
         state = self._state
         if template.set_only(state.parameters):
             return
+        if state.profile is not None:
+            self._draw(template, state.profile)
+            return
         if state.compensation is not None:
             state.compensation.line = self._shown
         if template.straight is not None and template.straight.run(state, self._sink):
@@ -250,6 +254,8 @@ class Walk:
             if self._on_error is not None:
                 pretend_done(block, state)
             raise
+        if state.profile is not None:
+            self._call_profile(state.profile)
 
     def _end_by_return(self, place: Place) -> bool:
         """End the program by an M99 of the main program, which acts as M2."""
@@ -263,7 +269,29 @@ class Walk:
         saved_modes.enter(self._state)
 
     def _leave(self, place: Place) -> None:
-        saved_modes.leave(self._state, self._sink, place)
+        state = self._state
+        saved_modes.leave(state, self._sink, place)
+        profile = state.profile
+        if profile is not None and len(self._flow.calls) < profile.depth:
+            state.profile = None
+            self._sink.line = profile.line
+            finish(profile, Block(place, None), state, self._sink)
+
+    def _call_profile(self, profile: Profile) -> None:
+        """Run the subroutine that draws a lathe cycle's profile."""
+        self._state.motion = 10
+        try:
+            self._flow.call(str(profile.sub), profile.block.place, profile.block.where["q"])
+        except ProgramError:
+            self._state.profile = None
+            raise
+        profile.depth = len(self._flow.calls)
+
+    def _draw(self, template: Template, profile: Profile) -> None:
+        """Let a line of such a subroutine draw."""
+        block = sort_words(template.fill(self._state.parameters), self._axes + "uw")
+        check(block, self._state)
+        profile.take(block, self._state)
 
     def _hand_over(self, error: ProgramError) -> None:
         """Raise an error, or report it once."""

@@ -57,7 +57,7 @@ def _arc(block: Block, state: State, sink: Sink, sense: int) -> None:
         centre = _centre_by_radius(block, state, start_point, end_point, sense)
     else:
         centre = _centre_by_offsets(block, state, start_point)
-        _check_radii(block, state, start_point, end_point, centre)
+        check_radii(block, state, start_point, end_point, centre)
     turns = sense * round(block.values.get("p", 1.0))
     if abs(turns) > MOST_TURNS:
         raise block.fault(ParseError, f"an arc of more than {MOST_TURNS:,} turns", "p", hint="P counts whole turns.")
@@ -101,8 +101,14 @@ def _centre_by_offsets(block: Block, state: State, start: Point) -> Point:
     return start[0] + block.values.get(first, 0.0), start[1] + block.values.get(second, 0.0)
 
 
-def _check_radii(block: Block, state: State, start: Point, end: Point, centre: Point) -> None:
-    """Check that start and end are as far from the centre."""
+def check_radii(block: Block, state: State, start: Point, end: Point, centre: Point) -> None:
+    """Check that start and end are as far from the centre.
+
+    Raises
+    ------
+    ModalConflictError
+        Where they are not, or one of them lies on it.
+    """
     begin_radius = _distance(start[0] - centre[0], start[1] - centre[1])
     end_radius = _distance(end[0] - centre[0], end[1] - centre[1])
     unit = "inch" if state.inch else "mm"

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from trochia.languages.gcode.codes import Code, Handler, WordCode, table
-from trochia.languages.gcode.groups.spindle import check_spindle
 from trochia.program.modes import TimeLaw
 
 if TYPE_CHECKING:
@@ -24,8 +23,7 @@ def set_feed(block: Block, state: State, sink: Sink) -> None:
 
 def _use(law: TimeLaw, name: str) -> Handler:
     def use(block: Block, state: State, sink: Sink) -> None:
-        if law == TimeLaw.PER_REV:
-            check_spindle(block, one=True)
+        del block
         state.law = law
         sink.comment(f"interpreter: feed mode set to {name}")
         sink.set_feed_mode(law)
@@ -45,5 +43,5 @@ G_CODES = table(
     Code(name="G94", about="F is units per minute", group=_GROUP, step=_GROUP,
          run=_use(TimeLaw.PER_SECOND, "units per minute")),
     Code(name="G95", about="F is units per revolution", group=_GROUP, step=_GROUP,
-         run=_use(TimeLaw.PER_REV, "units per revolution"), words="$"),
+         run=_use(TimeLaw.PER_REV, "units per revolution")),
 )  # fmt: skip
