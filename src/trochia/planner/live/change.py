@@ -14,8 +14,8 @@ import numpy as np
 from trochia.planner.live.hold import before, strengths
 from trochia.planner.live.laid import keeps, lay
 from trochia.planner.live.portion import states_at
-from trochia.planner.live.ramp import ramp
 from trochia.planner.live.road import Place
+from trochia.planner.ramp import ramp
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

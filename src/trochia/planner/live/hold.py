@@ -15,8 +15,8 @@ from trochia.kernels import path as kernel
 from trochia.kernels.layout import PHASE
 from trochia.planner.live.laid import keeps, lay
 from trochia.planner.live.portion import states_at
-from trochia.planner.live.ramp import ramp
 from trochia.planner.live.road import Place
+from trochia.planner.ramp import ramp
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

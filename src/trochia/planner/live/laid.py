@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from trochia.planner.live.ramp import Piece
     from trochia.planner.live.road import Place, Road
     from trochia.planner.live.window import Rules
+    from trochia.planner.ramp import Piece
 
 _INTERVALS = 24
 _KEPT = 1.0 + 1e-10  #: of a limit
