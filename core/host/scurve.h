@@ -1,4 +1,4 @@
-/* Speed along a path with limited jerk: ramps of constant jerk, with look-ahead over the whole path.
+/* Speed along a path with limited jerk: look-ahead over the whole path in states of speed and acceleration.
  *
  * The path is cut into stretches (a line is one).  For every row i of limits |q'| v <= V, |q''| v^2 + |q'| |a| <= A,
  * |q'''| v^3 + 3 |q''| v |a| + |q'| |j| <= J; a stretch keeps, of all rows, the greatest quotients.
@@ -9,18 +9,32 @@
 #include "host/plan.h"
 
 typedef struct {
-    double length;
+    double length, start;            /* start: s summed over the stretches before */
     double ceiling;                  /* greatest v that may be held all along it */
+    double free;                     /* v at which turning leaves nothing; infinite on lines */
     double along_a, bend_a;          /* greatest |q'| / A, |q''| / A */
     double along_j, bend_j, twist_j; /* greatest |q'| / J, 3 |q''| / J, |q'''| / J */
-    double back;  /* greatest v at its start, with a = 0, from which the rest of the path can be kept */
-    double other; /* the same by way of a nearer place of a = 0, while that is being weighed */
+    /* what -x'' along x' is more than the line's at its start and its end: a is 0 inside, and that times v^2 (negative
+     * before, positive after) on the lines beside it */
+    double kick_in, kick_out;
+    /* the pass back: where a leaves 0 for its start, and how fast; how long it speeds up in here */
+    double peak_v, peak_s, climb;
+    double node_v, birth_v, birth_s; /* where a pass back begins at its start: v there, and as above */
+    uint64_t leg;                    /* first leg of the pass back */
+    uint64_t birth, death; /* the pass back it lies in began at that stretch's start, and ended at this one's */
+    uint16_t legs, climbs; /* of the pass back, and of these those before a begins to fall to 0 */
     uint32_t segment;
     uint8_t last; /* 1: at rest at its end */
-    uint8_t node; /* 1: ramps back in time begin at its start */
     uint8_t over; /* 1: a velocity limit lies below the programmed feed */
-    uint8_t reserved;
+    uint8_t reserved[2];
 } trochia_stretch;
+
+/* Constant jerk within one stretch, forward or back in time. */
+typedef struct {
+    double from, to; /* s */
+    double v, a, j, duration;
+    uint64_t stretch;
+} trochia_leg;
 
 /* Where jerk changes: the motion from here to the next knot. */
 typedef struct {
@@ -39,14 +53,16 @@ typedef struct {
 /* How many stretches the segments make. */
 uint64_t trochia_scurve_count(const trochia_segment *segments, const double *pool, uint32_t axes, uint64_t count);
 
-/* Fills the stretches' limits, and stops where curvature jumps. */
+/* Fills the stretches' limits, and stops where curvature jumps; there is room for one stretch more. */
 void trochia_scurve_load(const trochia_segment *segments, const double *pool, uint64_t count,
                          const trochia_limits *limits, trochia_stretch *stretches);
 
-/* Plans all stretches into knots (room: 7 a stretch, 1 a rest, and 1); rests (in order) stand before their segment
- * (`count`: after all).  Returns the number of knots; the last one only says when and where it ends. */
+/* Plans all stretches (one more behind them is scratch) into knots; rests (in order) stand before their segment
+ * (`count`: after all).  Returns the number of knots, the last of which only says when and where it ends; 0 where the
+ * room for legs or knots is too small. */
 uint64_t trochia_scurve(trochia_stretch *stretches, uint64_t stretch_count, const uint64_t *rest_segments,
-                        const double *rest_seconds, uint64_t rests, trochia_knot *knots);
+                        const double *rest_seconds, uint64_t rests, trochia_leg *legs, uint64_t leg_room,
+                        trochia_knot *knots, uint64_t knot_room);
 
 /* s where each segment begins, and after the last where it ends: starts[segments + 1], summed as the knots' s is. */
 void trochia_scurve_starts(const trochia_stretch *stretches, uint64_t stretch_count, double *starts);

@@ -2,16 +2,16 @@
 #include <math.h>
 
 #include "host/limits.h"
-#include "host/scurve_ramp.h"
+#include "host/scurve_march.h"
 
 static const double ARC_PART = 0.2618; /* rad: 15 degrees; a row sees cosine and sine of its own part of the circle */
 static const double ARC_FINE = 0.0524; /* rad: 3 degrees on wide arcs, so that ramps find places to begin and end */
 static const double ARC_LONG = 4.0;    /* mm: that wide */
 static const double SAME_BEND = 1e-6;  /* curvature agrees to this part: what rounding leaves of a blend's zero ends */
-/* At the very ceiling nothing would be left for a; this much less leaves enough to follow ceilings that rounding sets
- * apart. */
-static const double RESERVE = 1.0 - 1e-6;
+/* At the very ceiling nothing would be left for a, and it would be neared for ever. */
+static const double RESERVE = 1.0 - 5e-4;
 static const double STRAIGHT = 1e-9; /* 1/mm */
+static const double ALONG = 1e-9;    /* a jump of curvature along x' leaves no more than this part across it */
 
 typedef struct {
     double along, bend, twist; /* greatest |q'|, |q''|, |q'''| */
@@ -131,24 +131,54 @@ static double load_cubic(const trochia_segment *segment, const double *pool, con
     return size.along;
 }
 
-/* Whether x'' at the end of one segment is not that at the start of the next. */
-static int bend_jumps(const trochia_segment *segment, const double *pool, uint32_t n) {
-    double x[2][27], jump = 0.0, size = 0.0;
+static double greatest_of(const double *vector, uint32_t n) {
+    double size = 0.0;
+    for (uint32_t i = 0; i < n; i++)
+        size = fmax(size, fabs(vector[i]));
+    return size;
+}
+
+/* What x'' at the start of a segment is more than at the end of the one before: nothing (0); or only along x', where a
+ * cubic meets a line and turns back less than it (then minus that part); or anything else (infinite). */
+static double kick_of(const trochia_segment *segment, const double *pool, uint32_t n) {
+    double x[2][27], jump[9], along = 0.0, square = 0.0, size;
     if (segment[0].kind == TROCHIA_LINE && segment[1].kind == TROCHIA_LINE)
-        return 0;
+        return 0.0;
     trochia_segment_at(&segment[0], pool, n, segment[0].length, 3, x[0]);
     trochia_segment_at(&segment[1], pool, n, 0.0, 3, x[1]);
-    for (uint32_t i = 2 * n; i < 3 * n; i++) {
-        jump = fmax(jump, fabs(x[0][i] - x[1][i]));
-        size = fmax(size, fmax(fabs(x[0][i]), fabs(x[1][i])));
+    size = fmax(greatest_of(x[0] + 2 * n, n), greatest_of(x[1] + 2 * n, n));
+    for (uint32_t i = 0; i < n; i++) {
+        jump[i] = x[1][2 * n + i] - x[0][2 * n + i];
+        along += jump[i] * x[1][n + i];
+        square += x[1][n + i] * x[1][n + i];
     }
-    if (jump <= SAME_BEND * size + STRAIGHT)
-        return 0;
+    if (greatest_of(jump, n) <= SAME_BEND * size + STRAIGHT)
+        return 0.0;
+    double across[9], kick = along / square;
+    for (uint32_t i = 0; i < n; i++)
+        across[i] = jump[i] - kick * x[1][n + i];
     trochia_segment_at(&segment[1], pool, n, segment[1].length, 3, x[1]);
     trochia_segment_at(&segment[0], pool, n, 0.0, 3, x[0]);
-    for (uint32_t i = 2 * n; i < 3 * n; i++)
-        size = fmax(size, fmax(fabs(x[0][i]), fabs(x[1][i])));
-    return jump > SAME_BEND * size + STRAIGHT;
+    size = fmax(size, fmax(greatest_of(x[0] + 2 * n, n), greatest_of(x[1] + 2 * n, n)));
+    if (greatest_of(jump, n) <= SAME_BEND * size + STRAIGHT)
+        return 0.0;
+    int corner = (segment[0].kind == TROCHIA_LINE && segment[1].kind == TROCHIA_CUBIC) ||
+                 (segment[0].kind == TROCHIA_CUBIC && segment[1].kind == TROCHIA_LINE);
+    if (corner && kick < 0.0 && greatest_of(across, n) <= ALONG * size + STRAIGHT)
+        return -kick;
+    return INFINITY;
+}
+
+/* What motion does at the joint after a segment. */
+static void load_joint(const trochia_segment *segment, const double *pool, uint32_t n, trochia_stretch *before,
+                       trochia_stretch *after) {
+    double kick = kick_of(segment, pool, n);
+    if (kick == INFINITY)
+        before->last = 1;
+    else if (segment[0].kind == TROCHIA_LINE)
+        after->kick_in = kick;
+    else
+        before->kick_out = kick;
 }
 
 static void load(const trochia_segment *segment, const double *pool, const trochia_limits *limits, uint32_t part,
@@ -165,20 +195,32 @@ static void load(const trochia_segment *segment, const double *pool, const troch
     double feed = segment->speed_limit / (stretched > 1.0 + 1e-12 ? stretched : 1.0);
     stretch->over = segment->speed_limit < INFINITY && stretch->ceiling < segment->speed_limit * (1.0 - 1e-9);
     stretch->ceiling = trochia_smaller(stretch->ceiling, feed);
+    stretch->free = INFINITY;
     if (stretch->bend_a > 0.0)
-        stretch->ceiling = trochia_smaller(stretch->ceiling, RESERVE / sqrt(stretch->bend_a));
+        stretch->free = 1.0 / sqrt(stretch->bend_a);
     if (stretch->twist_j > 0.0)
-        stretch->ceiling = trochia_smaller(stretch->ceiling, RESERVE / cbrt(stretch->twist_j));
+        stretch->free = trochia_smaller(stretch->free, 1.0 / cbrt(stretch->twist_j));
+    stretch->ceiling = trochia_smaller(stretch->ceiling, RESERVE * stretch->free);
 }
 
 void trochia_scurve_load(const trochia_segment *segments, const double *pool, uint64_t count,
                          const trochia_limits *limits, trochia_stretch *stretches) {
+    double s = 0.0, kick_in = 0.0;
     for (uint64_t k = 0; k < count; k++) {
         uint32_t parts = parts_of(&segments[k], pool, limits->axes);
         for (uint32_t part = 0; part < parts; part++, stretches++) {
             load(&segments[k], pool, limits, part, parts, stretches);
             stretches->segment = (uint32_t)k;
+            stretches->start = s;
+            s += stretches->length;
         }
-        stretches[-1].last = k + 1 == count || segments[k].stop || bend_jumps(&segments[k], pool, limits->axes);
+        stretches[-1].kick_in = kick_in;
+        trochia_stretch after = {.kick_in = 0.0};
+        if (k + 1 == count || segments[k].stop)
+            stretches[-1].last = 1;
+        else
+            load_joint(&segments[k], pool, limits->axes, &stretches[-1], &after);
+        kick_in = after.kick_in;
     }
+    *stretches = (trochia_stretch){.start = s};
 }

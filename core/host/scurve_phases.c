@@ -1,7 +1,7 @@
 /* Knots read as phases (cut where segments meet), and as states at given times. */
 #include <math.h>
 
-#include "host/scurve_ramp.h"
+#include "host/scurve_march.h"
 
 static double way(const trochia_knot *knot, double tau) {
     return tau * (knot->v + tau * (0.5 * knot->a + tau * knot->j / 6.0));

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 KNOT = dtype_of("trochia_knot")
+LEG = dtype_of("trochia_leg")
 STRETCH = dtype_of("trochia_stretch")
 _BLOCK = 65536
 
@@ -65,18 +66,24 @@ class Ramps:
 
     def _plan(self, where: NDArray[np.uint64], seconds: NDArray[np.float64]) -> None:
         count = len(self._segments)
-        stretches = np.empty(lib.trochia_scurve_count(*self._path(), self._limits.axes, count), dtype=STRETCH)
+        stretch_count = lib.trochia_scurve_count(*self._path(), self._limits.axes, count)
+        stretches = np.empty(stretch_count + 1, dtype=STRETCH)
         rows = pointer(stretches, "trochia_stretch *")
         lib.trochia_scurve_load(*self._path(), count, self._limits, rows)
-        self.knots = np.empty(7 * len(stretches) + len(where) + 1, dtype=KNOT)
-        made = lib.trochia_scurve(
-            rows, len(stretches), pointer(where, "uint64_t *"), pointer(seconds, "double *"), len(where), self._knot()
-        )
+        room, made = 4 * stretch_count + len(where) + 64, 0
+        while not made:
+            legs, self.knots = np.empty(room, dtype=LEG), np.empty(room, dtype=KNOT)
+            made = lib.trochia_scurve(
+                rows, stretch_count, pointer(where, "uint64_t *"), pointer(seconds, "double *"), len(where),
+                pointer(legs, "trochia_leg *"), room, self._knot(), room,
+            )  # fmt: skip
+            room *= 2
         self.knots.resize(made, refcheck=False)
         self.knots.setflags(write=False)
         self._starts = np.empty(count + 1)
-        lib.trochia_scurve_starts(rows, len(stretches), pointer(self._starts, "double *"))
+        lib.trochia_scurve_starts(rows, stretch_count, pointer(self._starts, "double *"))
         self.over = np.zeros(count, dtype=np.bool_)
+        stretches = stretches[:stretch_count]
         self.over[stretches["segment"][stretches["over"] != 0]] = True
 
     def _path(self) -> tuple[Any, Any]:

@@ -1,0 +1,276 @@
+/* The pass back, and how it may be joined.
+ *
+ * From a node (a stop, a stretch passed at an even speed, or a lowest place of the ceiling) motion is followed back in
+ * time, as fast as it gets, to where the ceiling is below it.  From there to the next lowest place only the ceiling
+ * binds.  For every place the arrest is kept: where a would be 0, and at which speed, were it to fall from there on;
+ * both grow along the pass, so any a = 0 at a speed has one place that joins it. */
+#include "host/scurve_march.h"
+
+static const double SUMMED = 1.0 + 1e-12;
+static const double EXACT = 1e-14;
+static const double STILL = 1e-7; /* nearer to the ceiling than this part, an even speed is kept */
+
+static trochia_track track_of(const trochia_course *course, int64_t by) {
+    return (trochia_track){course->stretches, course->count, by};
+}
+
+static trochia_arrest kick_arrest(const trochia_track *track, int64_t i, double kick, double v) {
+    return trochia_arrest_from(track, i, track->stretches[i].length, v, kick * v * v, NULL, 0, NULL);
+}
+
+/* Of a place passed at an even speed, by a lower one than planned: that of which the arrest back in time ends at v. */
+static trochia_leave slower_node(const trochia_course *course, int64_t b, double v) {
+    trochia_track back = track_of(course, -1);
+    const trochia_stretch *node = &course->stretches[b];
+    double low = 0.0, high = node->node_v;
+    trochia_arrest at = {.s = node->start};
+    for (int k = 0; k < 100 && high - low > EXACT * high; k++) {
+        double middle = 0.5 * (low + high);
+        trochia_arrest found = kick_arrest(&back, b - 1, node->kick_in, middle);
+        if (found.margin >= 0.0 && found.v <= v) {
+            low = middle;
+            at = found;
+        } else
+            high = middle;
+    }
+    return (trochia_leave){.s = at.s, .v_node = low, .stretch = b};
+}
+
+static trochia_arrest arrest_on(const trochia_track *back, const trochia_leg *leg, double t) {
+    double way = trochia_way_after(leg->v, leg->a, leg->j, t);
+    double rem = leg->from - way - back->stretches[leg->stretch].start;
+    double v = trochia_speed_after(leg->v, leg->a, leg->j, t);
+    return trochia_arrest_from(back, (int64_t)leg->stretch, trochia_larger(rem, 0.0), v,
+                               trochia_larger(leg->a + t * leg->j, 0.0), NULL, 0, NULL);
+}
+
+/* The time on a leg from which the arrest ends at v; that from its start ends at `from`, below. */
+static double leave_on(const trochia_track *back, const trochia_leg *leg, double from, double to, double v, double *s) {
+    double low = 0.0, high = leg->duration, under = from - v, over = to - v;
+    int stayed = 0;
+    for (int k = 0; k < 80 && high - low > EXACT * high; k++) {
+        double t = k % 3 < 2 && over > under ? low - under * (high - low) / (over - under) : 0.5 * (low + high);
+        if (!(t > low) || !(t < high))
+            t = 0.5 * (low + high);
+        trochia_arrest found = arrest_on(back, leg, t);
+        if (found.margin >= 0.0 && found.v <= v) {
+            over *= stayed == 1 ? 0.5 : 1.0;
+            stayed = 1;
+            low = t;
+            under = found.v - v;
+            if (under >= -EXACT * v)
+                break;
+        } else {
+            under *= stayed == -1 ? 0.5 : 1.0;
+            stayed = -1;
+            high = t;
+            over = found.margin >= 0.0 ? found.v - v : INFINITY;
+            if (over < EXACT * v) {
+                low = t;
+                break;
+            }
+        }
+    }
+    *s = arrest_on(back, leg, low).s;
+    return low;
+}
+
+/* Nearest stretch to the node (back in time the first) whose arrest at its start gets to v. */
+static int64_t stretch_for(const trochia_stretch *stretches, int64_t low, int64_t high, double v) {
+    while (high - low > 1) {
+        int64_t middle = low + (high - low) / 2;
+        if (stretches[middle].peak_v >= v)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+trochia_leave trochia_leave_at(const trochia_course *course, int64_t i, double v) {
+    const trochia_stretch *stretches = course->stretches;
+    trochia_leave leave = {.s = INFINITY};
+    if (stretches[i].birth == TROCHIA_NO_BIRTH)
+        return leave;
+    int64_t b = (int64_t)stretches[i].birth, death = (int64_t)stretches[b].death;
+    leave.v_node = stretches[b].node_v;
+    leave.stretch = b;
+    if (v <= stretches[b].birth_v) {
+        if (b < course->count && trochia_is_pinned(&stretches[b]))
+            return v < stretches[b].birth_v ? slower_node(course, b, v)
+                                            : (trochia_leave){stretches[b].birth_s, leave.v_node, 0.0, b};
+        if (stretches[b].node_v == 0.0)
+            leave.s = stretches[b].start;
+        return leave;
+    }
+    if (stretches[death].peak_v < v) {
+        leave.s = -INFINITY;
+        return leave;
+    }
+    trochia_track back = track_of(course, -1);
+    int64_t k = stretch_for(stretches, death, b, v);
+    double from = k + 1 == b ? stretches[b].birth_v : stretches[k + 1].peak_v, passed = 0.0;
+    leave.stretch = k;
+    leave.s = stretches[k].peak_s;
+    leave.tau = stretches[k].climb;
+    for (uint64_t n = 0; n < stretches[k].climbs; n++) {
+        const trochia_leg *leg = &course->legs[stretches[k].leg + n];
+        trochia_arrest end = arrest_on(&back, leg, leg->duration);
+        double to = end.margin >= 0.0 ? end.v : stretches[k].peak_v;
+        if (to >= v) {
+            double s = leave.s;
+            leave.tau = passed + leave_on(&back, leg, from, to, v, &s);
+            leave.s = s;
+            return leave;
+        }
+        from = to;
+        passed += leg->duration;
+    }
+    return leave;
+}
+
+static void keep(trochia_course *course, int64_t i, const trochia_run *run) {
+    trochia_stretch *stretch = &course->stretches[i];
+    stretch->leg = course->made;
+    stretch->legs = (uint16_t)run->count;
+    stretch->climbs = (uint16_t)run->climbs;
+    for (int k = 0; k < run->count; k++, course->made++)
+        if (course->made < course->room)
+            course->legs[course->made] = run->legs[k];
+}
+
+/* From the node at the start of stretch b back to where the ceiling is below. */
+static int64_t pass_from(trochia_course *course, int64_t b, double v, double a) {
+    trochia_stretch *stretches = course->stretches;
+    trochia_track back = track_of(course, -1);
+    int closing = 0;
+    trochia_arrest birth = trochia_arrest_from(&back, b - 1, stretches[b - 1].length, v, a, NULL, 0, NULL);
+    stretches[b].birth_v = a > 0.0 ? birth.v : v;
+    stretches[b].birth_s = a > 0.0 ? birth.s : stretches[b].start;
+    for (int64_t i = b - 1;; i--) {
+        trochia_run run;
+        trochia_arrest arrest;
+        int joins, barrier = 0;
+        if (closing || (a == 0.0 && v >= stretches[i].ceiling * (1.0 - STILL)))
+            run = (trochia_run){.v = v, .a = a, .rem = stretches[i].length};
+        else
+            trochia_climb(&back, i, v, a, &run);
+        double time = trochia_search(&back, NULL, i, &run, &arrest, &joins, &barrier);
+        trochia_run_out(&back, i, &run, time);
+        stretches[i].climb = time;
+        stretches[i].birth = (uint64_t)b;
+        stretches[i].peak_v = run.a > 0.0 ? arrest.v : run.v;
+        stretches[i].peak_s = run.a > 0.0 ? arrest.s : stretches[i].start;
+        keep(course, i, &run);
+        v = run.v;
+        a = run.a;
+        closing = (closing || barrier) && a > 0.0;
+        if (trochia_is_barrier(&back, i) || v > stretches[i - 1].ceiling * SUMMED) {
+            stretches[b].death = (uint64_t)i;
+            return i;
+        }
+    }
+}
+
+/* Greatest speed at which what is passed at an even one, up to the end of stretch q, joins the pass back behind it. */
+static double node_speed(const trochia_course *course, int64_t q) {
+    trochia_track ahead = track_of(course, 1);
+    const trochia_stretch *pinned = &course->stretches[q];
+    double low = 0.0, high = pinned->ceiling;
+    for (int k = 0; k < 60 && high - low > EXACT * high; k++) {
+        double v = k ? 0.5 * (low + high) : high;
+        trochia_arrest found = kick_arrest(&ahead, q + 1, pinned->kick_out, v);
+        if (found.margin >= 0.0 && trochia_leave_at(course, found.stretch, found.v).s >= found.s)
+            low = v;
+        else
+            high = v;
+    }
+    return low;
+}
+
+/* The next node before place d, where a pass back has ended; 0: the path's start. */
+static int64_t next_node(trochia_course *course, int64_t d, double *v) {
+    trochia_stretch *stretches = course->stretches;
+    for (int64_t j = d; j > 0; j--) {
+        trochia_stretch *before = &stretches[j - 1];
+        *v = 0.0;
+        if (before->last)
+            return j;
+        if (trochia_is_pinned(before)) {
+            *v = node_speed(course, j - 1);
+            return j - (j > 1 && trochia_pinned_end(stretches, j - 2) == j - 1 ? 2 : 1);
+        }
+        *v = stretches[j].ceiling;
+        if (j < d && before->ceiling > *v)
+            return j;
+        before->birth = TROCHIA_NO_BIRTH;
+    }
+    return 0;
+}
+
+/* Greatest speed of stretch p, passed at an even one, whose kick the line beside it can take up, or half of the line
+ * where there is a kick at its other end too. */
+static double kick_speed(const trochia_course *course, int64_t p, int64_t by) {
+    trochia_track track = track_of(course, by);
+    const trochia_stretch *stretches = course->stretches;
+    double kick = by > 0 ? stretches[p].kick_out : stretches[p].kick_in;
+    if (kick == 0.0)
+        return stretches[p].ceiling;
+    double other = by > 0 ? stretches[p + 2].kick_in : p > 1 ? stretches[p - 2].kick_out : 0.0;
+    double room = other > 0.0 ? 0.5 * stretches[p + by].length * SUMMED : stretches[p + by].length;
+    double low = 0.0, high = stretches[p].ceiling, from = trochia_exit(&track, p);
+    for (int k = 0; k < 60 && high - low > EXACT * high; k++) {
+        double v = k ? 0.5 * (low + high) : high;
+        trochia_arrest found = kick_arrest(&track, p + by, kick, v);
+        if (found.margin >= 0.0 && found.stretch == p + by && fabs(found.s - from) <= room)
+            low = v;
+        else
+            high = v;
+    }
+    return low;
+}
+
+/* Whether stretches p to q can be passed at one even speed: there is motion on either side, and it may change. */
+static int may_pin(const trochia_course *course, int64_t p, int64_t q) {
+    const trochia_stretch *stretches = course->stretches;
+    return p > 0 && q + 1 < course->count && !stretches[p - 1].last && !stretches[q].last &&
+           !trochia_is_pinned(&stretches[p - 1]) && !trochia_is_pinned(&stretches[q + 1]);
+}
+
+/* What cannot be passed at an even speed gets stops instead; the others get a ceiling of which their sides allow. */
+static void pin(trochia_course *course) {
+    trochia_stretch *stretches = course->stretches;
+    stretches[course->count].kick_in = stretches[course->count].kick_out = 0.0;
+    for (int64_t p = 0; p < course->count; p++) {
+        if (!trochia_is_pinned(&stretches[p]))
+            continue;
+        int64_t q = trochia_pinned_end(stretches, p);
+        int may = may_pin(course, p, q);
+        for (int64_t k = p; k <= q && !may; k++) {
+            if (stretches[k].kick_in > 0.0)
+                stretches[k - 1].last = 1;
+            if (stretches[k].kick_out > 0.0)
+                stretches[k].last = 1;
+            stretches[k].kick_in = stretches[k].kick_out = 0.0;
+        }
+        p = q;
+    }
+    for (int64_t p = 0; p < course->count; p++) {
+        if (!trochia_is_pinned(&stretches[p]))
+            continue;
+        int64_t q = trochia_pinned_end(stretches, p);
+        double least = trochia_smaller(kick_speed(course, p, -1), kick_speed(course, q, 1));
+        stretches[p].ceiling = stretches[q].ceiling = least;
+        p = q;
+    }
+}
+
+void trochia_scurve_back(trochia_course *course) {
+    double v = 0.0;
+    pin(course);
+    for (int64_t b = course->count; b > 0;) {
+        trochia_stretch *node = &course->stretches[b];
+        node->node_v = v;
+        b = next_node(course, pass_from(course, b, v, (b < course->count ? node->kick_in : 0.0) * v * v), &v);
+    }
+}

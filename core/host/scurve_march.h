@@ -1,0 +1,134 @@
+/* Motion along stretches, forward or back in time, within what each of them leaves.  Internal to scurve*.c.
+ *
+ * Both passes speed up (seen in their own direction) as hard as they can and may at any moment bring a to 0: an arrest.
+ * Legend: rem way left in a stretch, a >= 0 always. */
+#ifndef TROCHIA_SCURVE_MARCH_H
+#define TROCHIA_SCURVE_MARCH_H
+
+#include <math.h>
+#include <stddef.h>
+
+#include "host/scurve.h"
+
+/* How far sums of lengths may be apart by rounding [mm]: a knot this near a joint stands on it, or a sliver of a phase
+ * would have the jerk of one segment on the next. */
+#define TROCHIA_SAME_PLACE(s) (2e-15 * (s) + 1e-14)
+
+enum { TROCHIA_RUN_LEGS = 64 };
+
+/* Stretches seen in the direction of a pass: +1 forward, -1 back in time. */
+typedef struct {
+    const trochia_stretch *stretches;
+    int64_t count;
+    int64_t by;
+} trochia_track;
+
+/* Where an arrest ends.  margin < 0: it would exceed what is there, by that part; or it meets a place it may not pass
+ * with a > 0 (barrier). */
+typedef struct {
+    double margin, v, s;
+    int64_t stretch;
+    int barrier;
+} trochia_arrest;
+
+/* Motion through one stretch. */
+typedef struct {
+    double v, a, rem, time; /* where the legs have got to, and how long they take */
+    int count, climbs;      /* legs in all, and those before a begins to fall to 0 */
+    trochia_leg legs[TROCHIA_RUN_LEGS];
+} trochia_run;
+
+static inline double trochia_larger(double a, double b) {
+    return a > b ? a : b;
+}
+
+static inline double trochia_smaller(double a, double b) {
+    return a < b ? a : b;
+}
+
+static inline double trochia_speed_after(double v, double a, double j, double t) {
+    return v + t * (a + 0.5 * t * j);
+}
+
+static inline double trochia_way_after(double v, double a, double j, double t) {
+    return t * (v + t * (0.5 * a + t * j / 6.0));
+}
+
+/* A stretch that is passed at an even speed. */
+static inline int trochia_is_pinned(const trochia_stretch *stretch) {
+    return stretch->kick_in > 0.0 || stretch->kick_out > 0.0;
+}
+
+/* The last of the stretches that are passed at one even speed from stretch p on: p or the next. */
+static inline int64_t trochia_pinned_end(const trochia_stretch *stretches, int64_t p) {
+    return stretches[p].kick_out == 0.0 && stretches[p + 1].kick_in == 0.0 && stretches[p + 1].kick_out > 0.0 &&
+                   !stretches[p].last
+               ? p + 1
+               : p;
+}
+
+static inline double trochia_acceleration_left(const trochia_stretch *stretch, double v) {
+    return (1.0 - stretch->bend_a * v * v) / stretch->along_a;
+}
+
+static inline double trochia_jerk_left(const trochia_stretch *stretch, double v, double a) {
+    return (1.0 - stretch->twist_j * v * v * v - stretch->bend_j * v * a) / stretch->along_j;
+}
+
+/* Whether motion that leaves stretch i in the track's direction must do so at rest, or comes to one passed at an even
+ * speed, or to the path's end. */
+int trochia_is_barrier(const trochia_track *track, int64_t i);
+
+/* s where the track leaves stretch i. */
+double trochia_exit(const trochia_track *track, int64_t i);
+
+/* Time to go `rem` under constant jerk with a >= 0 all the time, when by `most` that is reached. */
+double trochia_time_over(double v, double a, double j, double rem, double most);
+
+/* Brings a to 0 from a state in stretch i with `rem` left of it; legs (or none) are written as it goes, up to `room`;
+ * `made` counts them. */
+trochia_arrest trochia_arrest_from(const trochia_track *track, int64_t i, double rem, double v, double a,
+                                   trochia_leg *legs, uint64_t room, uint64_t *made);
+
+/* Speeds up through stretch i as hard as it allows by itself. */
+void trochia_climb(const trochia_track *track, int64_t i, double v, double a, trochia_run *run);
+
+/* The state at a time of a run: its v, a and rem. */
+void trochia_run_at(const trochia_track *track, int64_t i, const trochia_run *run, double time, trochia_run *out);
+
+/* Cuts a run at a time, and goes on to the stretch's end by bringing a to 0. */
+void trochia_run_out(const trochia_track *track, int64_t i, trochia_run *run, double time);
+
+/* The part of a pass back by which it is joined from a = 0 at speed v. */
+typedef struct {
+    double s;        /* where that is; infinite: a pass back need not be joined at v */
+    double v_node;   /* speed at the node it leads to */
+    double tau;      /* time on the legs of `stretch` at which a begins to fall to 0 (seen back in time) */
+    int64_t stretch; /* the node itself: where it is */
+} trochia_leave;
+
+/* The passes' data. */
+typedef struct {
+    trochia_stretch *stretches;
+    int64_t count;
+    trochia_leg *legs; /* of the pass back */
+    uint64_t made, room;
+} trochia_course;
+
+/* How the pass back over stretch i may be joined at speed v. */
+trochia_leave trochia_leave_at(const trochia_course *course, int64_t i, double v);
+
+/* The arrest from a time of a run.  Where a pass back is given: `joins` is set where it would end beyond it. */
+trochia_arrest trochia_probe(const trochia_track *track, const trochia_course *course, int64_t i,
+                             const trochia_run *run, double time, int *joins);
+
+/* Greatest time of a run up to its end from which an arrest is possible; `joins`, `barrier`: what forbids more. */
+double trochia_search(const trochia_track *track, const trochia_course *course, int64_t i, const trochia_run *run,
+                      trochia_arrest *arrest, int *joins, int *barrier);
+
+/* The pass back over all stretches. */
+void trochia_scurve_back(trochia_course *course);
+
+static const uint64_t TROCHIA_NO_BIRTH = UINT64_MAX;
+
+#endif
