@@ -184,6 +184,6 @@ def _check(block: Block, state: State) -> None:
 
 
 G_CODES = table(
-    Code(name="G76", about="cut a thread in passes", group="motion", step="motion", run=cut, words="pijkqhelr",
+    Code(name="G76", about="cut a thread in passes", group="motion", step="motion", run=cut, words="pijkqhelr$",
          check=_check),
 )  # fmt: skip

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from trochia.languages.gcode.codes import Code, Handler, WordCode, table
+from trochia.languages.gcode.groups.spindle import check_spindle
 from trochia.program.modes import TimeLaw
 
 if TYPE_CHECKING:
@@ -23,7 +24,8 @@ def set_feed(block: Block, state: State, sink: Sink) -> None:
 
 def _use(law: TimeLaw, name: str) -> Handler:
     def use(block: Block, state: State, sink: Sink) -> None:
-        del block
+        if law == TimeLaw.PER_REV:
+            check_spindle(block, one=True)
         state.law = law
         sink.comment(f"interpreter: feed mode set to {name}")
         sink.set_feed_mode(law)
@@ -43,5 +45,5 @@ G_CODES = table(
     Code(name="G94", about="F is units per minute", group=_GROUP, step=_GROUP,
          run=_use(TimeLaw.PER_SECOND, "units per minute")),
     Code(name="G95", about="F is units per revolution", group=_GROUP, step=_GROUP,
-         run=_use(TimeLaw.PER_REV, "units per revolution")),
+         run=_use(TimeLaw.PER_REV, "units per revolution"), words="$"),
 )  # fmt: skip

@@ -47,8 +47,8 @@ def surface_speed(block: Block, state: State, sink: Sink) -> None:
     sink.set_spindle_mode(state.most_speed, on=True)
 
 
-def check_spindle(block: Block) -> None:
-    """Check that ``$`` names the spindle that is there.
+def check_spindle(block: Block, *, one: bool = False) -> None:
+    """Check that ``$`` names the spindle that is there, or all (-1) where not exactly ``one`` is wanted.
 
     Raises
     ------
@@ -56,7 +56,7 @@ def check_spindle(block: Block) -> None:
         For another one.
     """
     number = int(block.values.get("$", 0.0))
-    if number not in (0, _ALL):
+    if number != 0 and (one or number != _ALL):
         raise block.fault(ParseError, f"there is no spindle ${number}", "$", hint="There is one spindle, $0.")
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from trochia.errors import ModalConflictError, ParseError
 from trochia.languages.gcode.codes import Code, table
 from trochia.languages.gcode.groups.motion import target_of
+from trochia.languages.gcode.groups.spindle import check_spindle
 
 if TYPE_CHECKING:
     from trochia.languages.gcode.block import Block
@@ -45,7 +46,10 @@ def require_spindle(block: Block, state: State, name: str) -> None:
     ------
     ModalConflictError
         If it does not.
+    ParseError
+        For a ``$`` that names another one.
     """
+    check_spindle(block, one=True)
     if not state.direction:
         raise block.fault(ModalConflictError, f"{name} needs a turning spindle", block.mover,
                           hint="Write S, and M3 or M4, before it.")  # fmt: skip
@@ -65,7 +69,7 @@ def _check(block: Block, state: State) -> None:
 
 
 G_CODES = table(
-    Code(name="G33", about="move locked to the spindle", group="motion", step="motion", run=thread, words="ke",
+    Code(name="G33", about="move locked to the spindle", group="motion", step="motion", run=thread, words="ke$",
          check=_check),
-    Code(name="G33.1", about="rigid tapping", group="motion", step="motion", run=rigid_tap, words="kie", check=_check),
+    Code(name="G33.1", about="rigid tapping", group="motion", step="motion", run=rigid_tap, words="kie$", check=_check),
 )  # fmt: skip
