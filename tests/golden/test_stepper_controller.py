@@ -5,17 +5,22 @@ Where the source is wrong both values stand here: its own, and the right one tha
 
 from __future__ import annotations
 
+import csv
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from trochia.kernels.ticks import speed_move
 from trochia.pulses.ramps import Demand, profile
+from trochia.pulses.ramps.austin import recursion
+from trochia.pulses.ramps.library import next_speed
 from trochia.stepper import Kept, Stepper, VirtualTime
 from trochia.stepper.controller import MovePlan, SpeedController, State, delays, duration, plan_move
 
 ANGLE = 0.0314  # the step angle the source calculates with [rad]
+HERE = Path(__file__).parent / "stepper"
 RPM = 200 / 60  # steps/s of a motor of 200 steps a turn
 
 
@@ -93,6 +98,56 @@ def test_other_ramp_lengths_for_one_speed():
     assert (plan.rising, plan.braking) == (70, -35)
     assert plan_move(400, speed, 132.1, 132.1, angle=ANGLE).rising == 53
     assert plan_move(400, speed, 130, 130, angle=ANGLE).rising == 54
+
+
+def rows(name: str) -> list[dict[str, str]]:
+    with (HERE / name).open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def test_error_of_the_recursion():
+    """Its ratio against the square roots': 45 % at the first step, 1.4 % at the second, 0.01 % at the tenth."""
+    made = recursion(1.0, 100)
+    exact = profile(Demand(steps=100, speed=1e6, acceleration=1.0, deceleration=1e6), "exact").delays
+    for row in rows("recursion-error.csv"):
+        n, ratio = int(row["n"]), float(row["ratio"])
+        assert made[n] / made[n - 1] == pytest.approx(ratio, abs=1e-8)
+        error = float(row["error_percent"])
+        if n < 98:  # the move itself brakes at its end
+            assert exact[n] / exact[n - 1] == pytest.approx(float(row["exact_ratio"]), abs=2e-6)
+            assert 100 * (ratio / (exact[n] / exact[n - 1]) - 1) == pytest.approx(error, abs=2e-3)
+
+
+def test_library_rule_row_by_row():
+    table = rows("library-ramp.csv")
+    assert len(table) == 245
+    for steps in (2000, 3000, 800):
+        own = [row for row in table if row["steps"] == str(steps)]
+        speed, acceleration = (float(own[0][name]) for name in ("max_steps_s", "acceleration_steps_s2"))
+        made = profile(Demand(steps=steps, speed=speed, acceleration=acceleration), "library")
+        for row in own:
+            step = int(row["step"]) - 1
+            assert made.times[step] * 1e3 == pytest.approx(float(row["time_ms"]), abs=1e-3)
+            assert made.speeds[step] == pytest.approx(float(row["speed_steps_s"]), rel=1e-5)
+
+
+def test_controllers_own_report():
+    """From row 46 on the source prints the time two rows on (142.08 in place of 138.43 ms); the speeds are right."""
+    theory = profile(Demand(steps=400, speed=1e6 / 1492, acceleration=100 / ANGLE), "austin")
+    speed, time = next_speed(30.0, 400, 3000.0, 3000.0, 650.0), 0.0
+    for row in rows("controller-report.csv"):
+        step = int(row["step"])
+        assert theory.times[step] * 1e3 == pytest.approx(float(row["theory_time_ms"]), abs=0.0051)
+        if step != 68:  # the source repeats the speed of the row before
+            assert theory.speeds[step] == pytest.approx(float(row["theory_steps_s"]), abs=0.51)
+        if step:
+            time += 1e3 / speed
+            speed = next_speed(speed, 400 - step, 3000.0, 3000.0, 650.0)
+            shift = float(row["printed_time_ms"]) - time
+            assert shift == pytest.approx(0 if step < 46 else 3.6, abs=0.65)
+        assert time == pytest.approx(float(row["time_ms"]), abs=1e-3)
+        assert speed == pytest.approx(float(row["steps_s"]), abs=1e-3)
+        assert speed == pytest.approx(float(row["printed_steps_s"]), abs=1.1)
 
 
 def motor(speed: float, acceleration: float) -> tuple[Stepper, Kept]:

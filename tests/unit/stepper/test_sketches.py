@@ -132,8 +132,9 @@ def test_a_key_turns_round():
 def test_commands_one_after_another():
     said = converse(
         "12",
-        [("Commands", "S450A300D800S\r\n"), (r"at 800, 3\.278 s", "S450A300D800S"), ("where it stands", "S600A900D-100S"),
-         ("at -100", "S0A300D5S"), ("is no command", "S450A300D8xS"), ("is no command", "q")],
+        [("Commands", "S450A300D800S\r\n"), (r"at 800, 3\.278 s", "S450A300D800S"),
+         ("where it stands", "S600A900D-100S"), ("at -100", "S0A300D5S"), ("is no command", "S450A300D8xS"),
+         ("is no command", "q")],
     )  # fmt: skip
     assert "MAXSPEED = 450 steps/s\nACCEL = 300 steps/s²\nDIST = 800 steps\nat 800" in said
 
