@@ -28,6 +28,7 @@ HEADERS = [
     "shared/speed.h",
     "shared/segment.h",
     "host/ticks.h",
+    "host/fit.h",
     "host/gcode.h",
     "host/placement.h",
     "host/twin.h",

@@ -19,6 +19,7 @@ BACKWARDS, PAUSE, SCALE = lib.TROCHIA_SEGMENT_BACKWARDS, lib.TROCHIA_SEGMENT_PAU
 COARSEST = lib.TROCHIA_SEGMENT_COARSEST  #: greatest scale of ``add`` and ``add2``
 LONGEST = 2**31  #: a ramp lasts less [ticks]
 STEEPEST = 2**60  #: greatest C of a ramp [ticks²]
+_CHUNK = 512  # segments a call
 STATES = {"STOP": lib.TROCHIA_STOP, "ACCEL": lib.TROCHIA_ACCEL, "RUN": lib.TROCHIA_RUN, "DECEL": lib.TROCHIA_DECEL}
 
 
@@ -140,3 +141,60 @@ class SegmentRun:
             self._run, pointer(rows, "trochia_tick_segment *"), rows.size, steps, pointer(intervals, "uint32_t *")
         )
         return intervals[:made]
+
+
+class SegmentFit:
+    """Step ticks to tick segments, as few as keep every step within a tolerance of its tick.
+
+    What the executor will make of the segments is followed exactly, so deviations do not add up.
+
+    Parameters
+    ----------
+    now
+        Where the executor stands [ticks]; its fraction of a tick is 0.
+    tolerance
+        [ticks]; in any case half of either interval beside a step.
+    """
+
+    def __init__(self, now: int = 0, *, tolerance: float = 16.0) -> None:
+        if not 1.0 <= tolerance < 1e9:
+            raise ValueError(f"a tolerance is at least a tick, not {tolerance}")
+        self._tolerance = tolerance
+        self._state = ffi.new("trochia_fit_state *", {"now": now * 256})
+
+    @property
+    def now(self) -> float:
+        """Where the executor stands after what was fitted [ticks]."""
+        return self._state.now / 256
+
+    @property
+    def worst(self) -> float:
+        """The greatest deviation so far [ticks]."""
+        return float(self._state.worst)
+
+    def fit(self, ticks: NDArray[np.int64], *, backwards: bool = False) -> NDArray[np.void]:
+        """Return the segments of steps in one direction (segments,), of dtype ``SEGMENT``.
+
+        Parameters
+        ----------
+        ticks
+            When each step is (steps,), after all before; gaps are at least 4 ticks.
+
+        Raises
+        ------
+        ValueError
+            For ticks that are too close, or before the executor's time.
+        """
+        given = np.ascontiguousarray(ticks, np.int64)
+        if given.size and (given[0] < self.now + 1 or np.diff(given).min(initial=4) < 4):
+            raise ValueError("steps come one after the other, at least 4 ticks apart, after those before")
+        self._state.done, self._state.flags = 0, BACKWARDS if backwards else 0
+        parts: list[NDArray[np.void]] = []
+        while self._state.done < given.size:
+            part = np.empty(_CHUNK, SEGMENT)
+            made = lib.trochia_fit(
+                pointer(given, "const int64_t *"), given.size, self._tolerance, self._state, _CHUNK,
+                pointer(part, "trochia_tick_segment *"),
+            )  # fmt: skip
+            parts.append(part[:made])
+        return np.concatenate(parts) if parts else np.empty(0, SEGMENT)
