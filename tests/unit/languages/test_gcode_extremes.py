@@ -58,3 +58,10 @@ def test_a_spline_beyond_all_numbers():
         read("F3\nG5.1 Y[exp[700]] I1 J0\nM2\n")
     assert caught.value.source is not None
     assert caught.value.source.line == 2
+
+
+def test_the_rounding_of_a_number_beyond_all_integers():
+    with pytest.raises(ProgramError) as caught:
+        read("F1\nG3 X2 R[round[exp[700]]]\nM2\n")
+    assert caught.value.source is not None
+    assert caught.value.source.line == 2

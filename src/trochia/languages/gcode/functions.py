@@ -52,7 +52,7 @@ def _power(left: float, right: float) -> float:
 
 def _round(value: float) -> float:
     """Return the nearest integer; halves go away from zero."""
-    return math.floor(value + 0.5) if value >= 0.0 else -math.floor(0.5 - value)
+    return float(math.floor(value + 0.5)) if value >= 0.0 else -float(math.floor(0.5 - value))
 
 
 def _logarithm(value: float) -> float:

@@ -24,6 +24,7 @@ SHORT_RADIUS = (0.00127, 0.00005)  #: by which R may be too short, and the least
 SPIRAL = (0.02 * sqrt(2), 0.002 * sqrt(2))  #: by which start and end radius may differ anyway [mm], [inch]
 SPIRAL_MOST = (2.0 * sqrt(2), 0.2 * sqrt(2))  #: and by which they may never differ [mm], [inch]
 SPIRAL_SHARE = 0.001  #: else they may differ by this share of the greater one
+MOST_RADIUS = 1e150  #: by R; its square must be a number
 MOST_TURNS = 1_000_000  #: of one arc
 HALF_TURN = 1.0 - 1e-12  #: a chord of more than this share of the diameter counts as the diameter
 
@@ -135,6 +136,9 @@ def _centre_by_radius(block: Block, state: State, start: Point, end: Point, sens
     if chord == 0.0:
         raise block.fault(ModalConflictError, "an arc by R must not end where it begins", "r",
                           hint="A whole turn needs its centre: I J K.")  # fmt: skip
+    if max(chord, abs(radius)) > MOST_RADIUS:
+        raise block.fault(ModalConflictError, f"an arc by R of radius {abs(radius):g} over a chord of {chord:g} has no "
+                          "centre within all numbers", "r", hint="Use G1.")  # fmt: skip
     if chord / 2 - abs(radius) > SHORT_RADIUS[state.inch]:
         raise block.fault(ModalConflictError, f"radius {abs(radius):g} does not reach over a chord of {chord:.4f}", "r",
                           hint=f"R must be at least {chord / 2:.4f}.")  # fmt: skip

@@ -129,6 +129,7 @@ def _send(  # noqa: PLR0917
         sink.set_spline_time(block.values["f"])
     sink.nurbs_feed(points, order, end)
     state.position = end
+    state.cycle_words["initial"] = end[state.plane.normal]  # where a cycle that goes on begins anew
 
 
 def _check(block: Block, state: State) -> None:
