@@ -10,12 +10,13 @@ a rotor by next to nothing, so it loses no steps.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from trochia.analysis.problems import Problem, Severity, more_lines
+from trochia.analysis.swing import Swing
 from trochia.machine.torque import drive
 
 if TYPE_CHECKING:
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from trochia.analysis.plan import Plan
     from trochia.machine.torque import Drive
 
+MOST_ANGLE = 60.0  #: load angle up to which a stepper holds like a spring [electrical degree]
 LOST = "steps-lost"  #: code of the problem
 BLOCK = 65_536  #: samples at a time
 MOST = 1_000_000  #: samples of a program; longer ones are looked at in coarser steps
@@ -45,6 +47,9 @@ class TorqueUse:
         Of the joint there [mm/s or degree/s]; torque asked and there [N·m].
     lost
         Source lines in which more is asked than there is (n,), in the order of time.
+    swing, swing_line
+        Greatest load angle as the rotor swings, by linear theory [electrical degree], and the source line; at 90
+        degrees it gives its most.
     """
 
     joint: str
@@ -55,23 +60,47 @@ class TorqueUse:
     needed: float
     available: float
     lost: NDArray[np.uint32]
+    swing: float = 0.0
+    swing_line: int = 0
 
 
 def torque_use(plan: Plan) -> dict[str, TorqueUse]:
     """Return the use of every joint that names motor and driver, by name."""
     drives = {i: found for i in range(len(plan.machine.joints)) if (found := drive(plan.machine, i)) is not None}
     worst: dict[int, TorqueUse] = {}
+    swings = {i: Swing(found, sample_step(plan)) for i, found in drives.items()}
     if drives:
         for block in samples_of(plan):
             for i, motor in drives.items():
                 name = plan.machine.joints[i].name
                 worst[i] = _worse(worst.get(i), _use(name, motor, plan.machine.kinematics.matrix[i], block))
-    return {plan.machine.joints[i].name: use for i, use in worst.items()}
+                swings[i].take(block.velocity @ plan.machine.kinematics.matrix[i],
+                               block.acceleration @ plan.machine.kinematics.matrix[i], block.line)  # fmt: skip
+    return {
+        plan.machine.joints[i].name: replace(use, swing=swings[i].peak, swing_line=swings[i].line)
+        for i, use in worst.items()
+    }
 
 
 def lost_step_problems(plan: Plan, uses: dict[str, TorqueUse]) -> list[Problem]:
-    """Return one error for each joint whose motor would fall out of step, naming the first line and what would do."""
-    return [_problem(plan, use) for use in uses.values() if use.lost.size]
+    """Return one error for each joint whose motor would fall out of step, naming the first line and what would do.
+
+    Where the torque suffices but the rotor would swing too far, it is a warning: damping that no file names decides.
+    """
+    errors = [_problem(plan, use) for use in uses.values() if use.lost.size]
+    return errors + [_swinging(plan, use) for use in uses.values() if not use.lost.size and use.swing > MOST_ANGLE]
+
+
+def _swinging(plan: Plan, use: TorqueUse) -> Problem:
+    return Problem(
+        severity=Severity.WARNING,
+        code="rotor-swings",
+        file=plan.program.name,
+        line=use.swing_line,
+        message=f"the motor of joint {use.joint} may lose steps: where acceleration jumps its rotor would swing to "
+        f"{use.swing:.0f} degrees of load angle, and beyond {MOST_ANGLE:g} it holds less and less",
+        hint=f"{MOST_ANGLE / use.swing:.0%} of the acceleration, or an s-curve, swings less; damping helps.",
+    )
 
 
 def _problem(plan: Plan, use: TorqueUse) -> Problem:
@@ -103,10 +132,15 @@ class Samples:
     line: NDArray[np.uint32]
 
 
+def sample_step(plan: Plan) -> float:
+    """Return the time between samples [s]."""
+    return plan.machine.servo_period * max(1.0, plan.time_s / plan.machine.servo_period / MOST)
+
+
 def samples_of(plan: Plan) -> Iterator[Samples]:
     """Yield the samples of a plan, block by block, in the middle of even steps of time."""
     motion, duration = plan.trajectory, plan.time_s
-    step = plan.machine.servo_period * max(1.0, duration / plan.machine.servo_period / MOST)
+    step = sample_step(plan)
     samples = math.ceil(duration / step)
     for first in range(0, samples, BLOCK):
         # in the middle of each step: at its borders acceleration jumps

@@ -21,6 +21,7 @@ COMMANDS = {
     "interpolate": "Compare the classic interpolators on a line or an arc.",
     "profile": "A stepper's velocity profile, step by step, and whether it will do.",
     "sweep": "A stepper's torque-speed curve behind its driver, with a program's operating points.",
+    "size": "Is a joint's motor strong, fast and cool enough for what it has to do?",
     "machine": "New, show, check, import: machine files.",
 }
 

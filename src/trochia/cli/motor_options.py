@@ -80,13 +80,25 @@ def asked(given: dict[str, Any]) -> Asked:
 
 
 def _of_machine(given: dict[str, Any]) -> Asked:
-    """Return a joint's motor."""
+    """Return the motor of a joint of a machine."""
     from trochia import api  # noqa: PLC0415 - `trochia --help` must stay light
-    from trochia.machine.torque import drive  # noqa: PLC0415
 
-    machine = api.load(given["machine_name"])
+    return joint_motor(api.load(given["machine_name"]), given["joint"])
+
+
+def joint_motor(machine: Machine, name: str | None) -> Asked:
+    """Return the motor of a machine's joint; without a name of the first that names motor and driver.
+
+    Raises
+    ------
+    click.BadParameter
+        When the machine has no such joint.
+    ConfigError
+        When it does not name motor and driver.
+    """
+    from trochia.machine.torque import drive  # noqa: PLC0415 - `trochia --help` must stay light
+
     names = [joint.name for joint in machine.joints]
-    name = given["joint"]
     if name is not None and name not in names:
         raise click.BadParameter(f"{machine.name} has no joint {name!r}; it has {', '.join(names)}",
                                  param_hint="--joint")  # fmt: skip

@@ -21,11 +21,11 @@ def trochia(*args: str, stdin: str = "") -> subprocess.CompletedProcess[str]:
 def test_help_lists_the_commands():
     done = trochia("--help")
     assert done.returncode == 0
-    for command in ("check", "canon", "plan", "simulate", "interpolate", "profile", "sweep", "machine"):
+    for command in ("check", "canon", "plan", "simulate", "interpolate", "profile", "sweep", "size", "machine"):
         assert f"  {command} " in done.stdout
 
 
-@pytest.mark.parametrize("command", ["check", "canon", "plan", "simulate", "interpolate", "profile", "sweep", "machine"])
+@pytest.mark.parametrize("command", ["check", "canon", "plan", "simulate", "interpolate", "profile", "sweep", "size", "machine"])
 def test_every_command_has_help_with_an_example(command: str):
     done = trochia(command, "--help")
     assert done.returncode == 0
