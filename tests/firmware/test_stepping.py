@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import pytest
 
-from trochia.kernels.ticks import BACKWARDS, PAUSE, SCALE, SEGMENT, SegmentRun
+from trochia.kernels.ticks import BACKWARDS, PAUSE, SCALE, SEGMENT, SegmentFit, SegmentRun, speed_move
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -110,3 +110,16 @@ def test_random_segments(execute: Callable[..., Executed], seed: int):
     assert (done.late > -2).all()
     assert (done.late < 480).all()  # right after a segment is taken up; half a step at the fastest of these
     assert np.median(done.late) < LATENCY
+
+
+def test_a_planned_move_at_160_000_steps_a_second(execute: Callable[..., Executed]):
+    """From rest to rest: plan, segments, interrupt, pin: every step within 25 us of the plan's exact time."""
+    per_step, counts = round(2 * 16e6**2 / 2e6), (6400, 17_200, 6400)
+    planned = np.cumsum(speed_move(per_step, per_step, counts, 100 * 256)[0], dtype=np.int64)
+    segments = SegmentFit(tolerance=16).fit(planned)
+    done = execute([tuple(int(value) for value in row) for row in segments.tolist()])
+    made = np.cumsum(SegmentRun().intervals(segments), dtype=np.int64)
+    off = done.late + made - planned
+    assert off.size == 30_000
+    assert np.abs(off - np.median(off)).max() < 400
+    assert np.percentile(np.abs(off - np.median(off)), 95) < 50  # half a step at full speed
