@@ -25,7 +25,7 @@
 #include <simavr/sim_core.h>
 #include <simavr/sim_elf.h>
 
-enum { ENTRY = 4, WAKE = 4, RETI = 4, LONGEST = 1 << 24, PORTS = 12, VECTORS = 64 };
+enum { ENTRY = 4, WAKE = 4, RETI = 4, LONGEST = 1 << 24, PORTS = 12, VECTORS = 64, SUPPLY = 5000 /* mV */ };
 
 typedef struct {
     uint64_t cycle;
@@ -274,6 +274,7 @@ int main(int count, char **arguments) {
     chip->log = LOG_ERROR;
     image.frequency = (uint32_t)strtoul(arguments[3], NULL, 10);
     avr_load_firmware(chip, &image);
+    chip->vcc = chip->avcc = chip->aref = SUPPLY;
     watch_pins();
     take_units();
     avr_irq_register_notify(avr_get_interrupt_irq(chip, AVR_INT_ANY) + AVR_INT_IRQ_RUNNING, interrupt_ends, NULL);

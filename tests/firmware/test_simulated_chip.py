@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from trochia.backends.simulated_chip import LOST, ChipRun, SimulatedChip
+from trochia.backends.simulated_chip import LOST, PWM, ChipRun, SimulatedChip
 from trochia.errors import LinkError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from pathlib import Path
 
 BIT = 17 * 8  # 115,200 baud: UBRR 16 at double speed
 BYTE = 10 * BIT  # start, eight data, stop
@@ -98,3 +99,26 @@ def test_cycles_of_an_interrupt(counted: tuple[SimulatedChip, ChipRun]):
     costs = counted[0].interrupts()
     assert costs[11] == (1, 15, 15)  # TIMER1_COMPA: entry 4, jump 3, sbi 2, cbi 2, reti 4
     assert costs[12] == (1, 19, 19)  # TIMER1_COMPB wakes the chip: 4 more
+
+
+def test_a_missed_compare_value_waits_for_the_whole_turn(start: Callable[[str], SimulatedChip]):
+    rises, falls = (int(cycle) for cycle in start("units").run_until(80_000).edges("B0"))
+    assert falls - rises == pytest.approx(65536 - 1000 + 500, abs=15)  # the program polls
+
+
+def test_pwm_tells_its_duty(start: Callable[[str], SimulatedChip]):
+    run = start("units").run_until(80_000)
+    told = run.events[run.events["kind"] == PWM]
+    assert [(row["unit"], int(row["line"]), int(row["value"])) for row in told][-2:] == [
+        (b"2", 0, 64 | 255 << 16),
+        (b"2", 0, 192 | 255 << 16),
+    ]
+
+
+def test_an_analogue_input(start: Callable[[str], SimulatedChip], image: Callable[[str], Path],
+                           symbols: Callable[[Path], dict[str, int]]):  # fmt: skip
+    chip, place = start("units"), symbols(image("units"))["voltage"]
+    for millivolts in (2500, 1000):
+        chip.set_analogue(3, millivolts)
+        chip.run_until(chip.run_until(0).cycle + 120_000)
+        assert int.from_bytes(chip.read_memory(place, 2), "little") == pytest.approx(millivolts * 1024 / 5000, abs=1)
