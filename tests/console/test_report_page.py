@@ -15,6 +15,7 @@ import pytest
 from matplotlib.image import imread
 
 from trochia.analysis.report import write_report
+from trochia.analysis.report.reasons import Reason, Reasons
 
 CHROMIUM = shutil.which("chromium")
 sync_api = pytest.importorskip("playwright.sync_api", reason="the browser's driver, playwright, is not installed")
@@ -28,6 +29,15 @@ COLOURS = """canvas => {
 }"""
 
 
+def _reasons(data):
+    """Return limits for a made-up motion: the feed, and bends in every other tenth of the time."""
+    bends = (np.arange(len(data.samples.time)) * 10 // len(data.samples.time)) % 2
+    labels = (("programmed feed", "feed"), ("axis X acceleration in a bend", "bend"))
+    shares = [Reason(limit=words, group=group, seconds=data.time.motion / 2, share=0.5, beside_stops=0.0, used=1.0)
+              for words, group in labels]  # fmt: skip
+    return Reasons(shares=tuple(shares), labels=labels, sample=bends.astype(np.uint8), lines={})
+
+
 @pytest.fixture(scope="module")
 def reports(tmp_path_factory):
     folder = tmp_path_factory.mktemp("reports")
@@ -35,6 +45,7 @@ def reports(tmp_path_factory):
     kinds = {
         "flat": flat,
         "deep": SPECIMEN["contour"](depth=True, over=True, period=0.005),
+        "bound": replace(flat, reasons=_reasons(flat)),
         "planned": replace(flat, samples=None),
         "still": replace(flat, samples=None, programmed=None, line_times=None),
         "hostile": replace(
@@ -282,3 +293,23 @@ def test_it_prints(opened):
     printed = page.pdf()
     assert printed.startswith(b"%PDF")
     assert len(printed) > 20_000
+
+
+def test_the_path_is_coloured_by_what_binds(opened):
+    page = opened("bound")
+    by_speed = pixels(page, "#path-base")
+    assert page.locator("#limit-legend").is_hidden()
+    page.get_by_role("button", name="What binds").click()
+    settle(page)
+    assert distinct([by_speed, pixels(page, "#path-base")])
+    assert page.locator("#legend").is_hidden()
+    assert "bends 50 %" in page.locator("#limit-legend").inner_text()
+    point_at_path(page)
+    assert "bound by" in page.locator("#readout").inner_text()
+    page.get_by_role("button", name="Speed", exact=True).click()
+    settle(page)
+    assert page.locator("#legend").is_visible()
+
+
+def test_a_motion_without_reasons_has_no_such_colours(opened):
+    assert opened("flat").locator("#colours").is_hidden()

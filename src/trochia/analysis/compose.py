@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trochia.analysis.errors import contour_distances, lost_steps
+from trochia.analysis.explain import explain
 from trochia.analysis.report import (
     AxisSummary,
     LineTimes,
@@ -18,6 +19,9 @@ from trochia.analysis.report import (
     ReportData,
     TimeParts,
 )
+from trochia.analysis.report.reasons import reasons
+from trochia.analysis.report.summary import SLOW_LINES
+from trochia.analysis.shaped import words
 from trochia.machine.axes import AxisKind
 from trochia.toolpath import SegmentKind
 
@@ -28,6 +32,7 @@ if TYPE_CHECKING:
 
     from trochia.analysis.check import Verdict
     from trochia.analysis.plan import Plan
+    from trochia.analysis.report.reasons import Reasons
     from trochia.machine.axes import Axis
     from trochia.recorder import Recording
     from trochia.toolpath import Toolpath
@@ -39,6 +44,7 @@ CHORD = np.radians(3)  #: turn of one chord of a drawn arc
 def report_data(verdict: Verdict, plan: Plan, recording: Recording, source: Sequence[str]) -> ReportData:
     """Return everything the report shows of a simulated plan."""
     lines, seconds = plan.line_times()
+    samples = _samples(plan, recording)
     return ReportData(
         program=plan.program.name,
         source=source,
@@ -54,10 +60,22 @@ def report_data(verdict: Verdict, plan: Plan, recording: Recording, source: Sequ
         path_velocity=plan.machine.path.velocity,
         path_acceleration=plan.machine.path.acceleration,
         programmed=_programmed(plan),
-        samples=_samples(plan, recording),
+        samples=samples,
+        reasons=_reasons(plan, samples, lines[np.argsort(-seconds, kind="stable")[:SLOW_LINES]]),
+        shaping=_shaping(plan),
         line_times=LineTimes(line=lines.astype(np.int64), seconds=seconds),
         lost_steps=lost_steps(recording, plan.machine),
     )
+
+
+def _reasons(plan: Plan, samples: MotionSamples, lines: NDArray[np.uint32]) -> Reasons | None:
+    """Return which limits bind; None where nothing moves."""
+    return reasons(explain(plan), plan.trajectory, samples.time, lines) if plan.trajectory.schedule else None
+
+
+def _shaping(plan: Plan) -> str | None:
+    """Return the input shaping in words, and how far it takes motion off its path; None without any."""
+    return None if plan.deviation is None else f"{words(plan.machine)}, {plan.deviation.peak:.3f} mm off the path"
 
 
 def load_channel(joint: str) -> str:

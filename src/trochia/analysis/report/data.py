@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from trochia.analysis.problems import Problem
+    from trochia.analysis.report.reasons import Reasons
 
 Verdict = Literal["yes", "warnings", "no"]
 Range = tuple[float, float]
@@ -172,6 +173,10 @@ class ReportData:
         Along the path [mm].
     path_velocity, path_acceleration
         The machine's caps along the path [mm/s, mm/s²], if it has any.
+    reasons
+        Which limits bind, where the plan was explained.
+    shaping
+        Input shaping in words, where there is any.
     lost_steps
         Per joint, where a simulation counted them.
     """
@@ -192,6 +197,8 @@ class ReportData:
     programmed: ProgrammedPath | None = None
     samples: MotionSamples | None = None
     line_times: LineTimes | None = None
+    reasons: Reasons | None = None
+    shaping: str | None = None
     lost_steps: Mapping[str, int] | None = None
 
     def __post_init__(self) -> None:

@@ -57,6 +57,7 @@ def render_report(data: ReportData) -> str:
         reaches=summary.reaches(data),
         errors=summary.errors(data),
         slow_lines=slow,
+        reasons=data.reasons,
         problems=shown,
         problems_hidden=len(data.problems) - len(shown),
         payload=_json(payload(data, keep)),

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from trochia.analysis.report.data import MotionSamples, ProgrammedPath, ReportData
+    from trochia.analysis.report.reasons import Reasons
 
     Payload = dict[str, Any]
 
@@ -42,6 +43,7 @@ def payload(data: ReportData, keep_lines: Iterable[int] = ()) -> Payload:
     corners = None if programmed is None else _choose_corners(programmed)
     instants = None if samples is None else _choose_instants(samples)
     shown = [part.line[kept] for part, kept in ((programmed, corners), (samples, instants)) if part is not None]
+    why = data.reasons
     return {
         "format": FORMAT,
         "axes": [
@@ -50,7 +52,8 @@ def payload(data: ReportData, keep_lines: Iterable[int] = ()) -> Payload:
         ],
         "caps": {"velocity": data.path_velocity, "acceleration": data.path_acceleration},
         "programmed": None if programmed is None or corners is None else _programmed(programmed, corners),
-        "path": None if samples is None or instants is None else _path(samples, data.rapid_samples(), instants),
+        "path": None if samples is None or instants is None else _path(samples, data.rapid_samples(), instants, why),
+        "limits": None if why is None else [{"text": text, "group": group} for text, group in why.labels],
         "channels": None if samples is None else _channels(samples),
         "lines": _texts(data, shown, keep_lines),
     }  # fmt: skip
@@ -95,8 +98,8 @@ def _choose_instants(samples: MotionSamples) -> NDArray[np.int64]:
     return simplify(samples.time, np.concatenate(features, axis=1), min(PATH_POINTS, _NUMBERS // width))
 
 
-def _path(samples: MotionSamples, rapid: NDArray[np.bool_], kept: NDArray[np.int64]) -> Payload:
-    """Return the path at the instants ``kept``: position, errors, speed, line, rapid or not."""
+def _path(samples: MotionSamples, rapid: NDArray[np.bool_], kept: NDArray[np.int64], why: Reasons | None) -> Payload:
+    """Return the path at the instants ``kept``: position, errors, speed, line, rapid or not, and what binds."""
     error = samples.following_error
     return {
         "time": pack(samples.time[kept], "f8"),
@@ -106,6 +109,7 @@ def _path(samples: MotionSamples, rapid: NDArray[np.bool_], kept: NDArray[np.int
         "speed": pack(samples.speed[kept], "f4"),
         "line": pack(samples.line[kept], "i4"),
         "rapid": pack(rapid[kept], "u1"),
+        "limit": None if why is None else pack(why.sample[kept], "u1"),
         "of": len(samples.time),
     }
 

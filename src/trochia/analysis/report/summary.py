@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from trochia.analysis.report.texts import count, duration, number
+from trochia.analysis.report.texts import count, duration, number, percent
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -78,7 +78,7 @@ class ErrorRow:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SlowLine:
-    """A source line that costs time: its share of the total, way covered and mean speed (None where it moves not)."""
+    """A source line that costs time: share of the total, way, mean speed (None where it moves not), and what binds."""
 
     line: int
     text: str
@@ -86,6 +86,7 @@ class SlowLine:
     share: float
     length: float | None
     speed: float | None
+    limit: str | None = None
 
 
 def verdict_text(data: ReportData) -> str:
@@ -166,10 +167,19 @@ def slow_lines(data: ReportData) -> list[SlowLine]:
     total = data.time.total or 1.0
     return [
         SlowLine(line=line, text=data.text(line), seconds=seconds, share=seconds / total, length=length or None,
-                 speed=length / seconds if length else None)
+                 speed=length / seconds if length else None, limit=_limit(data, line))
         for line, seconds, length
         in zip(times.line[order].tolist(), times.seconds[order].tolist(), lengths, strict=True)
     ]  # fmt: skip
+
+
+def _limit(data: ReportData, line: int) -> str | None:
+    """Return the limit that costs a line most of its time, with its part where that is not all."""
+    found = None if data.reasons is None else data.reasons.lines.get(line)
+    if found is None:
+        return None
+    limit, part = found
+    return limit if round(part, 2) >= 1.0 else f"{limit}, {percent(part)}"
 
 
 def _lengths(data: ReportData, lines: NDArray[np.int64]) -> list[float]:
@@ -192,6 +202,8 @@ def facts(data: ReportData) -> list[tuple[str, str]]:
     if data.time.motion > 0:
         mean = (data.feed_length + data.rapid_length) / data.time.motion
         rows.append(("Mean speed in motion", f"{number(mean, 2)} mm/s"))
+    if data.shaping is not None:
+        rows.append(("Input shaping", data.shaping))
     if data.lost_steps is not None:
         lost = {joint: steps for joint, steps in data.lost_steps.items() if steps}
         rows.append(("Lost steps", ", ".join(f"{joint}: {steps:,}" for joint, steps in lost.items()) or "none"))

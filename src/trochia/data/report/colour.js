@@ -9,6 +9,9 @@ const VIRIDIS = [
 /** How many colours a path is drawn in; the eye tells no more. */
 const LEVELS = 48;
 
+/** Groups of limits in the order of their colours, `--limit-…` of the style sheet. */
+const LIMIT_GROUPS = ["feed", "velocity", "acceleration", "jerk", "bend", "stop", "path", "other"];
+
 /** Reads the theme that is in force; ask again when it changes. */
 class Theme {
   constructor() {
@@ -18,6 +21,7 @@ class Theme {
     const from = Number(this.get("map-from"));
     const to = Number(this.get("map-to"));
     this.levels = Array.from({ length: LEVELS }, (_, i) => mapColour(from + ((to - from) * i) / (LEVELS - 1)));
+    this.limits = LIMIT_GROUPS.map((group) => this.get(`limit-${group}`));
     this.font = `12px ${getComputedStyle(document.body).fontFamily}`;
   }
 

@@ -46,6 +46,7 @@ class Motion {
     this.lines = payload.lines;
     this.programmed = unpackAll(payload.programmed);
     this.path = unpackAll(payload.path);
+    this.limits = payload.limits;
     this.channels = unpackAll(payload.channels);
     const time = this.path ? this.path.time : [];
     this.start = time.length ? time[0] : 0;
@@ -70,10 +71,11 @@ class Motion {
   /**
    * The motion at an instant, between samples by straight lines.
    * @param {number} time [s]
-   * @returns {{time: number, index: number, position: number[], error: number[]|null, speed: number, line: number}}
+   * @returns {{time: number, index: number, position: number[], error: number[]|null, speed: number, line: number,
+   *   limit: string}}
    */
   at(time) {
-    const { time: times, position, error, speed, line } = this.path;
+    const { time: times, position, error, speed, line, limit } = this.path;
     const index = Math.min(lastNotAbove(times, time), times.length - 2);
     const weight = Math.min(1, Math.max(0, (time - times[index]) / (times[index + 1] - times[index])));
     const between = (values) => values[index] + weight * (values[index + 1] - values[index]);
@@ -83,6 +85,7 @@ class Motion {
       position: position.map(between),
       error: error ? error.map(between) : null,
       speed: between(speed),
+      limit: limit ? this.limits[limit[weight < 0.5 ? index : index + 1]].text : "",
       line: line[weight < 0.5 ? index : index + 1],
     };
   }

@@ -96,6 +96,21 @@ function wireFeed(motion, store, view) {
   });
 }
 
+/** The switch between colours of speed and of what binds, each with its legend. */
+function wireColours(motion, view) {
+  const buttons = [...document.querySelectorAll("[data-colours]")];
+  byId("colours").hidden = !motion.limits || !motion.moves;
+  for (const button of buttons) {
+    button.addEventListener("click", () => {
+      view.colours = button.dataset.colours;
+      press(buttons, button);
+      byId("legend").hidden = view.colours !== "speed";
+      byId("limit-legend").hidden = view.colours !== "limit";
+      view.draw();
+    });
+  }
+}
+
 /** @param {number} error [mm] */
 function formatError(error) {
   return error < SMALL_ERROR ? `${formatFixed(error * 1000, 2)} µm` : `${formatFixed(error, 4)} mm`;
@@ -107,6 +122,7 @@ function readings(motion, state) {
   const parts = [["line", String(now.line)], ["", formatTime(now.time)]];
   motion.axes.forEach((axis, i) => parts.push([axis.name, formatFixed(now.position[i], 3)]));
   parts.push(["", `${formatFixed(now.speed * FEED_UNITS[state.feed], feedDigits(state.feed))} ${state.feed}`]);
+  if (now.limit) parts.push(["bound by", now.limit]);
   if (now.error) parts.push(["error", formatError(Math.hypot(...now.error))]);
   return { parts, source: motion.text(now.line) };
 }
@@ -183,6 +199,7 @@ function start() {
   document.querySelector(".path .tools").hidden = view.empty;
   wirePathTools(view, motion);
   wireFeed(motion, store, view);
+  wireColours(motion, view);
   attachPathInput(view, store);
   attachPathKeys(view);
   attachLines(store, motion);

@@ -22,15 +22,18 @@ function strokeRuns(context, { x, y }, wanted) {
 }
 
 /** Segments by colour, in runs that follow each other: computed once, stroked at every change of view. */
-class SpeedRuns {
-  /** @param {Motion} motion */
-  constructor(motion) {
-    const { speed, rapid } = motion.path;
+class ColourRuns {
+  /**
+   * @param {number} points
+   * @param {number} levels how many colours there are
+   * @param {(segment: number) => number} levelOf the colour of the segment i → i + 1, or -1 for none
+   */
+  constructor(points, levels, levelOf) {
     /** @type {number[][]} per level: first, last, first, last … points of runs */
-    this.levels = Array.from({ length: LEVELS }, () => []);
+    this.levels = Array.from({ length: levels }, () => []);
     let level = -1;
-    for (let i = 0; i + 1 < speed.length; i++) {
-      const next = rapid[i + 1] ? -1 : speedLevel((speed[i] + speed[i + 1]) / 2, motion.topFeed);
+    for (let i = 0; i + 1 < points; i++) {
+      const next = levelOf(i);
       if (next >= 0) {
         if (next === level) this.levels[next][this.levels[next].length - 1] = i + 1;
         else this.levels[next].push(i, i + 1);
@@ -63,6 +66,19 @@ class SpeedRuns {
       context.stroke();
     });
   }
+}
+
+/** The path by speed; rapids are drawn otherwise. */
+function speedRuns({ path, topFeed }) {
+  const { speed, rapid } = path;
+  const level = (i) => (rapid[i + 1] ? -1 : speedLevel((speed[i] + speed[i + 1]) / 2, topFeed));
+  return new ColourRuns(speed.length, LEVELS, level);
+}
+
+/** The path by the limit that binds, rapids too. */
+function limitRuns({ path, limits }) {
+  const groups = limits.map(({ group }) => LIMIT_GROUPS.indexOf(group));
+  return new ColourRuns(path.limit.length, LIMIT_GROUPS.length, (i) => groups[path.limit[i + 1]]);
 }
 
 /** Millimetre paper under a plane view, numbered along two edges. */

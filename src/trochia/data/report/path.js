@@ -17,7 +17,9 @@ class PathView {
     Object.assign(this, { canvases, motion, store });
     this.extent = this.#extent();
     this.camera = new Camera(motion.axes, (axis) => (this.extent ? this.extent[axis][1] - this.extent[axis][0] : 0));
-    this.runs = motion.moves ? new SpeedRuns(motion) : null;
+    this.runs = motion.moves ? { speed: speedRuns(motion), limit: motion.limits ? limitRuns(motion) : null } : null;
+    /** What the colours of the commanded path say: "speed" or "limit". */
+    this.colours = "speed";
     this.shown = { programmed: true, commanded: true, actual: true, rapids: true, dots: true, travel: true };
     this.gain = 1;
     this.interval = this.#usualInterval();
@@ -150,16 +152,18 @@ class PathView {
     const whole = first === 0 && last === screen.x.length - 1;
     const actual = shown.actual && motion.path.error ? () => this.#drawActual(context, first, last) : () => {};
     if (this.gain === 1) actual();
+    const byLimit = this.colours === "limit";
     if (shown.commanded) {
-      context.lineWidth = 2.6;
+      const [runs, colours] = byLimit ? [this.runs.limit, theme.limits] : [this.runs.speed, theme.levels];
+      context.lineWidth = byLimit ? 3.2 : 2.6;
       if (!whole) {
         context.globalAlpha = 0.14;
-        this.runs.stroke(context, screen, theme.levels, [0, screen.x.length - 1]);
+        runs.stroke(context, screen, colours, [0, screen.x.length - 1]);
         context.globalAlpha = 1;
       }
-      this.runs.stroke(context, screen, theme.levels, [first, last]);
+      runs.stroke(context, screen, colours, [first, last]);
     }
-    if (shown.rapids) {
+    if (shown.rapids && !byLimit) {
       const rapid = (i) => i >= first && i < last && motion.path.rapid[i + 1] === 1;
       // paper first: between the dashes the actual path shows only where it leaves the commanded one
       for (const [width, colour, dashes] of [[2.6, "paper", []], [1.6, "rapid", [6, 5]]]) {
@@ -171,7 +175,7 @@ class PathView {
       context.setLineDash([]);
     }
     if (this.gain !== 1) actual();
-    if (shown.dots) this.#drawDots(context);
+    if (shown.dots && !byLimit) this.#drawDots(context);  // they would hide short stretches of a colour
   }
 
   /** Where the machine was; its distance beside the path drawn `gain` times as large. */
