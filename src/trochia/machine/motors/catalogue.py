@@ -18,6 +18,7 @@ from typing import ClassVar
 from trochia.errors import ConfigError
 from trochia.machine.codecs import Flag, Quantity, Text, Whole
 from trochia.machine.motors.hybrid import HybridStepper
+from trochia.machine.motors.plausible import check_plausible
 from trochia.machine.schema import Bound, check_bounds, key
 
 
@@ -53,6 +54,7 @@ class CatalogueStepper:
                 f"must be below the holding torque of {self.holding_torque:g} N·m, not {self.detent_torque:g} N·m",
                 key="detent_torque",
             )
+        check_plausible(self)
 
     @property
     def torque_constant(self) -> float:
