@@ -7,9 +7,10 @@
  * turn, so such a step is made at once.
  *
  *   step_run    the trochia_segment_run that is executed
+ *   step_next   the next one, laid ready by the main program; step_ready says that it is, 1, and is taken back to 0
  *   step_pulse  mask of the step pin in port D; 0 in a pause
  *   GPIOR0      bit 0: the next step takes the long way
- *   step_load() the segment is done: take up the next;   step_whole()  the long way of a step
+ *   step_load() the segment is done and no other is ready;   step_whole()  the long way of a step
  *               both return whether the compare value they leave has gone by
  */
 #include <avr/io.h>
@@ -18,6 +19,7 @@
 #define FRACTION step_run + 4
 #define PHASE step_run + 5
 #define STRIDE step_run + 6
+#define FLAGS step_run + 7
 #define LEFT step_run + 8
 #define INTERVAL_LOW step_run + 10
 #define ADD step_run + 12
@@ -92,6 +94,12 @@ late:
     rjmp whole
 
 bend:
+    lds r24, LEFT
+    lds r25, LEFT + 1
+    or r24, r25
+    brne 0f
+    rjmp next /* it was the last stride: nothing to bend */
+0:
     sum INTERVAL_LOW, ADD_LOW, add
     sum INTERVAL_LOW + 1, ADD_LOW + 1
     sum INTERVAL, ADD
@@ -114,7 +122,6 @@ bend:
     sbci r25, 0
     brcc 2f
     add r26, r24 /* fewer are left: those */
-    breq load
     clr r24
     clr r25
 2:  sts LEFT, r24
@@ -153,6 +160,28 @@ bend:
     rjmp TIMER1_COMPA_vect
     .endm
 
+next:
+    lds r24, step_ready
+    tst r24
+    brne 0f
+    rjmp load
+0:  lds r24, FLAGS
+    lds r25, step_next + 7
+    cpse r24, r25
+    sbi LONG_WAY /* another direction: first the step that is armed */
+    .irp offset, 0, 1, 2, 3, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23
+    lds r24, step_next + \offset
+    sts step_run + \offset, r24
+    .endr
+    lds r24, INTERVAL + 3
+    cpi r24, 0
+    breq 1f
+    sbi LONG_WAY
+1:  clr r24
+    sts step_ready, r24
+    lds r24, OCR1AL
+    lds r25, OCR1AH
+    rjmp check
 load:
     restore
     long_way step_load

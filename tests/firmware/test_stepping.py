@@ -62,7 +62,7 @@ def steady(interval: float, count: int, stride: int) -> tuple[int, ...]:
 
 @pytest.mark.parametrize(("rate", "stride"), [(160_000, 16), (200_000, 64)])
 def test_sustained_rates_of_one_motor(execute: Callable[..., Executed], rate: int, stride: int):
-    done = execute([steady(16e6 / rate, 20_000, stride)])
+    done = execute([steady(16e6 / rate, 500, stride)] * 40)
     settled = done.late[20:-1]  # the first and the last step take the long way
     assert settled.max() <= 160  # 10 us; a bend takes 110 cycles longer, and the steps after it catch up
     assert settled.mean() < LATENCY + 20
@@ -73,7 +73,7 @@ def test_sustained_rates_of_one_motor(execute: Callable[..., Executed], rate: in
 
 def test_a_step_costs_what_the_page_says(execute: Callable[..., Executed]):
     assert execute([steady(300, 5000, 255)]).cycles == pytest.approx(71.5, abs=0.5)
-    assert execute([steady(300, 5000, 1)]).cycles == pytest.approx(179, abs=3)
+    assert execute([steady(300, 5000, 1)]).cycles == pytest.approx(188, abs=2)
 
 
 def test_acceleration_within_segments(execute: Callable[..., Executed]):
@@ -113,7 +113,7 @@ def test_random_segments(execute: Callable[..., Executed], seed: int):
 
 
 def test_a_planned_move_at_160_000_steps_a_second(execute: Callable[..., Executed]):
-    """From rest to rest: plan, segments, interrupt, pin: every step within 25 us of the plan's exact time."""
+    """From rest to rest: plan, segments, interrupt, pin: every step within 10 us of the plan's exact time."""
     per_step, counts = round(2 * 16e6**2 / 2e6), (6400, 17_200, 6400)
     planned = np.cumsum(speed_move(per_step, per_step, counts, 100 * 256)[0], dtype=np.int64)
     segments = SegmentFit(tolerance=16).fit(planned)
@@ -121,5 +121,6 @@ def test_a_planned_move_at_160_000_steps_a_second(execute: Callable[..., Execute
     made = np.cumsum(SegmentRun().intervals(segments), dtype=np.int64)
     off = done.late + made - planned
     assert off.size == 30_000
-    assert np.abs(off - np.median(off)).max() < 400
+    assert np.abs(off - np.median(off))[20:-1].max() < 160  # 10 us
+    assert np.abs(off - np.median(off)).max() < 320
     assert np.percentile(np.abs(off - np.median(off)), 95) < 50  # half a step at full speed

@@ -16,9 +16,11 @@ volatile uint8_t go;
 trochia_tick_segment rows[ROWS];
 uint8_t row_count;
 
-trochia_segment_run step_run;
+trochia_segment_run step_run, step_next;
 uint8_t step_pulse;
-static uint8_t row, turns, flags, ending;
+volatile uint8_t step_ready;
+static volatile uint8_t row;
+static uint8_t turns, flags, ending;
 
 uint8_t step_load(void);
 uint8_t step_whole(void);
@@ -32,12 +34,18 @@ static inline uint8_t gone_by(void) {
 
 /* The next segment, while the last step of the one before is still to come with its own direction. */
 static inline void load(void) {
-    if (row == row_count) {
+    if (step_ready) {
+        uint8_t fraction = step_run.fraction;
+        step_run = step_next;
+        step_run.fraction = fraction;
+        step_ready = 0;
+    } else if (row == row_count) {
         ending = 1;
         GPIOR0 = 1;
         return;
+    } else {
+        trochia_segment_load(&step_run, &rows[row++]);
     }
-    trochia_segment_load(&step_run, &rows[row++]);
     GPIOR0 = step_run.interval >> 24 || step_run.flags != flags;
 }
 
@@ -87,6 +95,16 @@ int main(void) {
     TIMSK1 = 1 << OCIE1A;
     PORTB |= 2;
     sei();
-    for (;;)
-        ;
+    for (;;) { /* lays the next segment ready, unless the interrupt was quicker */
+        uint8_t next = row;
+        if (step_ready || next == row_count)
+            continue;
+        trochia_segment_load(&step_next, &rows[next]);
+        cli();
+        if (row == next) {
+            row++;
+            step_ready = 1;
+        }
+        sei();
+    }
 }
