@@ -17,6 +17,7 @@ from trochia.analysis.problems import Problem, Severity, from_error, more_lines
 from trochia.analysis.shaped import warning as shaping_warning
 from trochia.analysis.torque import LOST, TorqueUse, lost_step_problems, torque_use
 from trochia.analysis.travel import travel_error
+from trochia.analysis.warmth import heat_problems
 
 if TYPE_CHECKING:
     from typing import Any
@@ -73,7 +74,12 @@ class Verdict:
 def judge(plan: Plan) -> Verdict:
     """Return the verdict on a plan."""
     uses = torque_use(plan)
-    problems = [*lost_step_problems(plan, uses), *warnings(plan.program, plan.machine), *_slowed(plan)]
+    problems = [
+        *lost_step_problems(plan, uses),
+        *heat_problems(plan),
+        *warnings(plan.program, plan.machine),
+        *_slowed(plan),
+    ]
     problems += shaping_warning(plan.deviation, plan.machine, plan.program.name)
     problems.sort(key=lambda problem: problem.severity is not Severity.ERROR)
     outside = travel_error(plan)

@@ -84,3 +84,10 @@ def test_the_torque_profile_stays_within_what_the_motor_gives():
     assert not over.ok
     assert held.torque["X"].used <= 0.7 + 1e-3
     assert held.ok
+
+
+def test_a_motor_beyond_its_rating_is_a_warning():
+    hot = api.check(PROGRAM, loads(STAGE.replace("2.8 A", "4.5 A")), name="p.ngc")
+    assert hot.ok
+    assert ["too-hot"] == [problem.code for problem in hot.problems]
+    assert "rated current with 14.4 W" in hot.problems[0].message

@@ -30,4 +30,4 @@ def test_absurd_values_are_named_with_what_would_do(changes: dict[str, float], k
         replace(ROW, **changes)
     assert caught.value.key == key
     assert said in str(caught.value)
-    assert "would do with the other numbers" in str(caught.value)
+    assert "would do with the others" in str(caught.value)

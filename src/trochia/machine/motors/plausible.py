@@ -54,5 +54,5 @@ def _within(name: str, value: float, bounds: tuple[float, float], said: str, num
     raise ConfigError(
         f"cannot be right: {said}",
         key=name,
-        hint=f"Look at the units: {side} {number[0] * nearest / value:.3g} {number[1]} would do with the other numbers.",
+        hint=f"Look at the units: {side} {number[0] * nearest / value:.3g} {number[1]} would do with the others.",
     )
