@@ -89,5 +89,5 @@ def test_the_torque_profile_stays_within_what_the_motor_gives():
 def test_a_motor_beyond_its_rating_is_a_warning():
     hot = api.check(PROGRAM, loads(STAGE.replace("2.8 A", "4.5 A")), name="p.ngc")
     assert hot.ok
-    assert ["too-hot"] == [problem.code for problem in hot.problems]
+    assert [problem.code for problem in hot.problems] == ["too-hot"]
     assert "rated current with 14.4 W" in hot.problems[0].message
