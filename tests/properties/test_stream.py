@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from trochia.planner import PROFILES, plan
-from trochia.planner.live import StreamPlanner, lookahead, paving
+from trochia.planner.live import StreamPlanner, paving, stream
 from trochia.program import MOVE, Dwell, MoveKind, Program, Spindle
 from trochia.toolpath import build
 
@@ -26,7 +26,7 @@ def _small():
         patch.setattr(paving, "_FIRST", 32)
         patch.setattr(paving, "_CHUNK", 64)
         patch.setattr(paving, "REACH", 40)
-        patch.setattr(lookahead, "WINDOW", 8.0)
+        patch.setattr(stream, "WINDOW", 8.0)
         yield
 
 

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from trochia.planner.live.window import Rules
 
 _INSTANTS = 24  #: in a worst stopping time at which a way over is looked for
+_MET = 1e-10  #: mm
 _SEARCH = 48  #: places on the other plan that are tried before the one between two of them is refined
 
 
@@ -122,13 +123,16 @@ def _meet(state: NDArray[Any], ahead: Ahead, most: tuple[float, float], span: fl
     def off(at: float) -> float:
         return ahead.way(at) - sum(piece.way for piece in ramp(_motion(state), _motion(ahead.state(at)), *most))
 
-    low = ahead.begin
+    low, short = ahead.begin, True
     for k in range(1, _SEARCH + 1):
         high = ahead.begin + span * (k / _SEARCH) ** 2
-        if off(high) >= 0.0:
+        enough = off(high) >= 0.0
+        if short and enough:
+            begin, end = low, high
             for _ in range(50):
-                middle = 0.5 * (low + high)
-                low, high = (low, middle) if off(middle) >= 0.0 else (middle, high)
-            return high
-        low = high
+                middle = 0.5 * (begin + end)
+                begin, end = (begin, middle) if off(middle) >= 0.0 else (middle, end)
+            if off(end) <= _MET:  # else it jumps there: a state with a != 0 cannot be waited for
+                return end
+        low, short = high, not enough
     return None

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 SETTLE = 2.0  #: settling time, in worst stopping times: on bends less than the whole limit is left for braking
 WARM = 3.0  #: how far behind a window begins, in the same
-WINDOW = 40.0  #: how much a window adds, in the same
+WINDOW = 40.0  #: how much a window adds, in the same, where motion may yet be told to change
 FIRST = 5.0  #: and the first, so that motion begins soon
 _SAME_SPEED = 1e-9  #: of each other
 _SAME_ACCELERATION = 1e-7  #: of the limit
@@ -53,17 +53,27 @@ class Lookahead:
         Where and when motion begins.
     rested
         Whether the rest that stands before that place is over.
+    window
+        How much a window adds, in worst stopping times; None: :data:`WINDOW`.
     """
 
     def __init__(
-        self, road: Road, rules: Rules, start: Place, t: float, speeds: Speeds, *, rested: bool = False
+        self,
+        road: Road,
+        rules: Rules,
+        start: Place,
+        t: float,
+        speeds: Speeds,
+        *,
+        rested: bool = False,
+        window: float | None = None,
     ) -> None:
         self.road, self.rules, self.speeds = road, rules, speeds
         self.stopped = False
         self._start, self._begin, self._rested = start, t, rested
         self._feed = speeds.feed  # greatest that the phases in hand are planned for
         self._stop = rules.stopping_time
-        self._span = FIRST
+        self._span, self._window = FIRST, WINDOW if window is None else window
         self._end = self._reach(start.row, FIRST + SETTLE)
         self.phases = self._from(start, t)
         self.safe = 0
@@ -93,7 +103,7 @@ class Lookahead:
             self._end = self._reach(self._end, self._span)
             self._join()
             self._settle()
-            self._span = min(2.0 * self._span, WINDOW)
+            self._span = min(2.0 * self._span, self._window)
         return True
 
     def state(self, t: float) -> NDArray[Any]:
@@ -151,7 +161,7 @@ class Lookahead:
             if self.safe or self.finished:
                 return
             self._end = self._reach(self._end, self._span)
-            self._span = min(2.0 * self._span, WINDOW)
+            self._span = min(2.0 * self._span, self._window)
 
     def _way_over(self, old: NDArray[Any], t: float) -> tuple[NDArray[Any], NDArray[Any]]:
         """Return the phases in hand up to where the plan for other speeds goes on, and what goes on."""
@@ -255,11 +265,13 @@ class Lookahead:
 
     def _splice(self, new: NDArray[Any], joints: list[int]) -> bool:
         """Go on as ``new`` from the first of some joints where it agrees with the phases in hand; False: nowhere."""
-        at = {int(new["segment"][k]): int(k) for k in _joints(new)}
+        begins = _joints(new)
+        rows = new["segment"][begins]
         for joint in joints:
             here = self.phases[joint]
-            k = at.get(int(here["segment"]))
-            if k is not None and self._agree(here, new[k]):
+            at = int(np.searchsorted(rows, here["segment"]))
+            k = int(begins[min(at, len(begins) - 1)])
+            if new["segment"][k] == here["segment"] and self._agree(here, new[k]):
                 self.phases = np.concatenate([self.phases[:joint], _dated(new[k:], float(here["t"]))])
                 return True
         return False

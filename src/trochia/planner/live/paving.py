@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from trochia.toolpath import Toolpath
 
 REACH = 64  #: runs on either side that a joint may depend on, with much room
-HISTORY = 8_192  #: moves kept for the other case
+HISTORIES = (REACH, 512, 4_096)  #: runs before a piece that it is built with, the first that will do
 _CHUNK = 16_384  #: moves at a time: their path stays in the cache
 _SAME = 1e-9  #: mm, degree
 _FIRST = 1_024  #: and at the start, so that motion begins soon
@@ -57,8 +57,8 @@ class _Paver:
         self._actions: list[Action] = []  # `at` counts from the program's start
         self._base = self._end = 0  # number of the first move in hand, and after the last
         self._done = 0  # all that moves before this one have become is out
-        self._starts: list[int] = []  # moves in hand at which runs begin
-        self._near = 0  # which of the moves in hand the next piece is built from
+        self._starts = [0] * len(HISTORIES)  # moves at which runs begin, that the next piece can be built from,
+        self._level = 0  # and which of them is taken
         self._seam: tuple[float, NDArray[np.float64]] | None = None  # what the next piece must begin with
         self._spindle: Spindle | None = None  # as it turns at the first move in hand
 
@@ -69,8 +69,8 @@ class _Paver:
                 self._take(part)
                 if self._end - self._done >= size + 2 * REACH:
                     stretch = self._build(last=False)
+                    size = min(2 * size, _CHUNK) if stretch else 2 * size
                     if stretch is not None:
-                        size = min(2 * size, _CHUNK)
                         yield stretch
         if self._program is not None and (stretch := self._build(last=True)) is not None:
             yield stretch
@@ -88,30 +88,30 @@ class _Paver:
     def _build(self, *, last: bool) -> Stretch | None:
         """Return what can be said of the moves in hand; None where that is nothing."""
         self._moves = [np.concatenate(self._moves)]
-        program, path, first = self._path(self._near)
-        if not self._fits(path, first):
-            program, path, first = self._path(0)
-            if not self._fits(path, first):
+        program, path, first = self._path(self._starts[self._level])
+        while not self._fits(path, first):
+            if self._level + 1 == len(self._starts):
                 raise PlanningError("the path cannot be built piece by piece: its joints depend on too many before")
-        moves, from_row = path.segments["move"], self._base + len(self._moves[0]) - len(program.moves)
-        runs = np.unique(moves[first:])
+            self._level += 1
+            program, path, first = self._path(self._starts[self._level])
+        moves, base = path.segments["move"], self._starts[self._level]
+        runs = _runs(moves[first:])
         if not last and len(runs) <= 2 * REACH:
             return None
         cut = int(runs[-REACH]) if not last else len(program.moves) + 1
         end = int(np.searchsorted(moves, cut))
-        stretch = self._stretch(program, path, first, end, last=last, base=from_row)
+        stretch = self._stretch(program, path, first, end, last=last, base=base)
         if not last:
-            self._seam = _look(path, end)
-            before = np.unique(moves[:end])
-            near = int(before[-REACH]) if len(before) >= REACH else 0
-            self._done = from_row + cut
-            self._drop(from_row + near)
+            self._seam, self._done = _look(path, end), base + cut
+            before = _runs(moves[:end])
+            self._starts = [base + int(before[-n]) if len(before) >= n else self._starts[-1] for n in HISTORIES]
+            self._drop()
         return stretch
 
-    def _path(self, skip: int) -> tuple[Program, Toolpath, int]:
-        """Return the moves in hand but the first ``skip`` as a program, its path, and its first segment not out yet."""
+    def _path(self, base: int) -> tuple[Program, Toolpath, int]:
+        """Return the moves in hand from ``base`` on as a program, its path, and its first segment that is not out."""
         assert self._program is not None, "a path is built of at least one block"
-        held, base = self._moves[0], self._base + skip
+        held, skip = self._moves[0], base - self._base
         turning = [a for a in self._actions if isinstance(a, Spindle) and a.at < base]
         before = [turning[-1]] if turning else [self._spindle] if self._spindle else []
         actions = [replace(a, at=max(a.at - base, 0)) for a in (*before, *(a for a in self._actions if a.at >= base))]
@@ -142,23 +142,28 @@ class _Paver:
                        rests=rests.segments[kept] - np.uint64(first), seconds=rests.seconds[kept],
                        start=path.start)  # fmt: skip
 
-    def _drop(self, near: int) -> None:
-        """Note from which move, the first of a run, the next piece is built; drop moves that lie too far before it."""
-        self._starts.append(near)
-        base = max((start for start in self._starts if start <= near - HISTORY), default=self._base)
-        if base > self._base:
-            assert self._program is not None, "moves are dropped of a program"
-            held, keep = self._moves[0], base - self._base
-            turning = [a for a in self._actions if isinstance(a, Spindle) and a.at < base]
-            self._spindle = turning[-1] if turning else self._spindle
-            self._actions = [action for action in self._actions if action.at >= base]
-            self._program = replace(self._program, start=held["target"][keep - 1].copy())
-            self._moves, self._base = [held[keep:].copy()], base
-            if len(self._splines):
-                kept = _own_splines(replace(self._program, moves=self._moves[0], splines=self._splines), 0)
-                self._moves, self._splines = [kept.moves], kept.splines
-            self._starts = [start for start in self._starts if start >= base]
-        self._near = near - self._base
+    def _drop(self) -> None:
+        """Drop the moves that no further piece is built from."""
+        base = self._starts[-1]
+        if base == self._base:
+            return
+        assert self._program is not None, "moves are dropped of a program"
+        held, keep = self._moves[0], base - self._base
+        turning = [a for a in self._actions if isinstance(a, Spindle) and a.at < base]
+        self._spindle = turning[-1] if turning else self._spindle
+        self._actions = [action for action in self._actions if action.at >= base]
+        self._program = replace(self._program, start=held["target"][keep - 1].copy())
+        self._moves, self._base = [held[keep:].copy()], base
+        if len(self._splines):
+            kept = _own_splines(replace(self._program, moves=self._moves[0], splines=self._splines), 0)
+            self._moves, self._splines = [kept.moves], kept.splines
+
+
+def _runs(moves: NDArray[np.uint32]) -> NDArray[np.uint32]:
+    """Return each of some rising numbers once."""
+    fresh = np.ones(len(moves), dtype=np.bool_)
+    np.not_equal(moves[1:], moves[:-1], out=fresh[1:])
+    return moves[fresh]
 
 
 def _own_splines(program: Program, first: int) -> Program:

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from trochia.program import Program
 
 
+WINDOW = 300.0  #: how much a window adds, in worst stopping times: long ones cost less to join
+
+
 class StreamPlanner:
     """The motion of a program, portion by portion, each final.
 
@@ -47,7 +50,7 @@ class StreamPlanner:
 
     def __iter__(self) -> Iterator[Portion]:
         """Yield portions without a gap from t = 0 to the program's end."""
-        ahead = Lookahead(self.road, self.rules, Place(0, 0.0), 0.0, Speeds())
+        ahead = Lookahead(self.road, self.rules, Place(0, 0.0), 0.0, Speeds(), window=WINDOW)
         given = 0
         while True:
             if ahead.safe > given:
