@@ -30,6 +30,7 @@ class Stepper:
         self._position = self._target = 0
         self._speed = 0.0  # of run_speed
         self._max_speed = self._acceleration = self._deceleration = 1.0
+        self._start_stop = math.inf
         self._square, self._way = 0.0, 1  # squared speed after the last step, and which way it was
         self._last = 0.0  # when it was
         self._due: tuple[float, float] | None = None  # when the next is, and the squared speed after it
@@ -65,6 +66,18 @@ class Stepper:
         wanted = acceleration if deceleration is None else deceleration
         self._deceleration = _positive("deceleration", wanted, "steps/s²")
         self._change()
+
+    def set_start_stop_speed(self, speed: float) -> None:
+        """Name the greatest speed the motor starts at, and stops from, without losing steps [steps/s].
+
+        From then on what would start or stop beyond it is refused when it is run.
+
+        Raises
+        ------
+        LimitError
+            Unless it is above 0.
+        """
+        self._start_stop = _positive("start/stop speed", speed, "steps/s")
 
     def acceleration(self) -> float:
         """Return the acceleration [steps/s²]."""
@@ -117,8 +130,14 @@ class Stepper:
         """Make the step that is due, if one is; return whether there is still way to go.
 
         Call it again and again: where nothing is due yet, time passes to what is due next.
+
+        Raises
+        ------
+        LimitError
+            When the first or the last step would be faster than the start/stop speed.
         """
         if self._due is None:  # the way begins now; other motors may begin theirs before time goes on
+            self._check_ends()
             self._plan(self.time.now)
             return self._due is not None
         moment, square = self._due
@@ -154,10 +173,22 @@ class Stepper:
         self._steady = None
 
     def run_speed(self) -> bool:
-        """Make the step that is due at constant speed, if one is; return whether it was made."""
+        """Make the step that is due at constant speed, if one is; return whether it was made.
+
+        Raises
+        ------
+        LimitError
+            When the speed is above the start/stop speed: it needs a ramp.
+        """
         if not self._speed:
             return False
         if self._steady is None:
+            if abs(self._speed) > self._start_stop:
+                raise LimitError(
+                    f"{abs(self._speed):g} steps/s from rest is more than the start/stop speed of "
+                    f"{self._start_stop:g} steps/s",
+                    hint="Speed up to it: set_max_speed(), set_acceleration(), move_to() and run().",
+                )
             self._steady = self.time.now + 1.0 / abs(self._speed)
         if self.time.now < self._steady:
             self.time.idle()
@@ -187,6 +218,17 @@ class Stepper:
         self.output.energise(self.time.now, on=False)
 
     # inside
+
+    def _check_ends(self) -> None:
+        """Refuse ramps whose first or last step is too fast: it takes √(2/a), or 1/v where v is reached within it."""
+        steepest = max(self._acceleration, self._deceleration)
+        first = min(math.sqrt(steepest / 2.0), self._max_speed)
+        if self._position != self._target and first > self._start_stop:
+            raise LimitError(
+                f"with {steepest:g} steps/s² the first or last step is made at {first:.4g} steps/s, more than the "
+                f"start/stop speed of {self._start_stop:g} steps/s",
+                hint=f"At most {2.0 * self._start_stop**2:.4g} steps/s² would do.",
+            )
 
     def _make(self, moment: float, way: int) -> None:
         """Make one step."""

@@ -139,6 +139,24 @@ def test_figures_that_cannot_be_are_refused():
         StepperGroup(made).move_to([1, 2])
 
 
+def test_starts_beyond_the_motor_are_refused():
+    """√(2/a) is the first step's time: 170 rpm are 566.7 steps/s, so 642,222 steps/s² would do and no more."""
+    made, kept = motor(2000, 700_000)
+    made.set_start_stop_speed(170 * 200 / 60)
+    made.move(100)
+    with pytest.raises(LimitError, match=r"591\.6 steps/s.*566\.667") as refused:
+        made.run()
+    assert "6.422e+05" in str(refused.value.hint)
+    made.set_acceleration(642_000)
+    made.run_to_position()
+    assert 1 / kept.moments[0] < 170 * 200 / 60
+    made.set_speed(600)
+    with pytest.raises(LimitError, match="600 steps/s from rest"):
+        made.run_speed()
+    made.set_speed(560)
+    made.run_speed()
+
+
 def test_outputs_are_switched():
     made, kept = motor()
     made.enable_outputs()
