@@ -1,1 +1,1 @@
-"""Plane curves: no machine, no time.  :mod:`nurbs` evaluates them, :mod:`biarc` turns them into tangent arcs."""
+"""Plane curves: no machine, no time.  :mod:`nurbs` evaluates them, :mod:`cubics` turns them into cubics."""

@@ -72,14 +72,33 @@ def test_a_probe_is_a_feed_that_stops():
     assert program.moves["path_mode"].tolist() == [PathMode.EXACT_STOP, PathMode.BLEND_DEFAULT]
 
 
-def test_a_spline_is_arcs_that_touch():
+def test_a_spline_is_the_curve_itself():
     program = read("F600\nG5 X10 Y0 I0 J5 P0 Q5")
-    moves = program.moves
-    assert set(moves["kind"].tolist()) <= {MoveKind.ARC, MoveKind.FEED}
-    assert np.allclose(moves["target"][-1, :2], [10, 0], atol=0)
-    u = np.linspace(0, 1, 2001)
-    y = 3 * u * (1 - u) ** 2 * 5 + 3 * u**2 * (1 - u) * 5
-    assert moves["target"][:, 1].max() == pytest.approx(y.max(), abs=2e-3)
+    assert program.moves["kind"].tolist() == [MoveKind.SPLINE]
+    assert program.splines[0].tolist() == [[0, 0, 0], [0, 5, 0], [10, 5, 0], [10, 0, 0]]
+    assert program.moves["target"][0, :2].tolist() == [10, 0]
+
+
+def test_a_spline_lies_where_its_system_does():
+    program = read("F600\nG10 L2 P1 X5 Y1 Z2 R90\nG92 Z1\nG20\nG0 X0 Y0 Z1\nG5.1 X2 I1 J1")
+    # turned by 90 degrees: (x, y) of the program is (-y, x); then the origin
+    quadratic = np.array([(0, 0), (25.4, 25.4), (50.8, 0)])
+    cubic = np.array([quadratic[0], (quadratic[0] + 2 * quadratic[1]) / 3, (2 * quadratic[1] + quadratic[2]) / 3,
+                      quadratic[2]])  # fmt: skip
+    assert program.splines[0, :, 0] == pytest.approx(5 - cubic[:, 1])
+    assert program.splines[0, :, 1] == pytest.approx(1 + cubic[:, 0])
+    assert program.splines[0, :, 2] == pytest.approx(program.moves["target"][-1, 2])
+    assert program.splines[0, -1] == pytest.approx(program.moves["target"][-1, :3])
+
+
+def test_a_rational_curve_is_cubics_near_it():
+    quarter = "F60\nG0 X10\nG5.2 P1 L3\nX10 Y10 P0.70710678118654752\nX0 Y10 P1\nG5.3"
+    program = read(quarter)
+    t = np.linspace(0, 1, 50)[:, None, None]
+    p = program.splines.transpose(1, 0, 2)[:, None]
+    points = (1 - t) ** 3 * p[0] + 3 * (1 - t) ** 2 * t * p[1] + 3 * (1 - t) * t**2 * p[2] + t**3 * p[3]
+    assert np.abs(np.hypot(points[..., 0], points[..., 1]) - 10).max() <= 1e-4
+    assert set(program.moves["kind"].tolist()) == {MoveKind.RAPID, MoveKind.SPLINE}
 
 
 def test_a_spline_in_inverse_time_lasts_what_it_was_given():
@@ -88,9 +107,28 @@ def test_a_spline_in_inverse_time_lasts_what_it_was_given():
 
 
 def test_a_curve_in_another_plane_lies_in_xy():
-    moves = read("F60\nG18\nG5.2 P1 L3\nX5 Y5 P1\nX10 Y0 P1\nG5.3").moves
-    assert (moves["plane"][moves["kind"] == MoveKind.ARC] == 0).all()
-    assert moves["target"][-1, :2].tolist() == [10, 0]
+    program = read("F60\nG18\nG5.2 P1 L3\nX5 Y5 P1\nX10 Y0 P1\nG5.3")
+    assert program.splines[-1, -1].tolist() == [10, 0, 0]
+    assert (program.splines[..., 2] == 0).all()
+
+
+def test_travel_is_checked_along_the_curve_not_only_at_its_end():
+    mill = load("reference-mill")
+    text = "S99 M3 F600\nG0 X-480\nG5 X-470 Y0 I-60 J50 P-60 Q50\nM2\n"
+    first = trochia.check(text, mill).problems[0]
+    assert (first.code, first.line) == ("travel", 3)
+
+
+def test_extents_and_time_are_those_of_the_curve():
+    plan = trochia.plan(read("S99 M3 F600\nG5 X10 Y0 I0 J10 P0 Q10"), load("reference-mill"))
+    assert plan.size.extents[1, 1] == pytest.approx(7.5, abs=1e-3)  # 10 * 3 t (1 - t) at a half
+    assert plan.size.feed_length == pytest.approx(20.0, abs=5e-3)
+    recording = trochia.simulate(plan)
+    assert recording is not None
+
+
+def test_a_curve_that_leads_nowhere_is_no_move():
+    assert len(read("F60\nG5.2 P1 L3\nX0 Y0 P1\nX0 Y0 P1\nG5.3").moves) == 0
 
 
 @pytest.mark.parametrize("code", ["G87 X1 Z-1 R1 I1 J0 K0", "G88 X1 Z-1 R1 P0"])

@@ -86,6 +86,7 @@ class Builder(SpecialMoves):
         self._speed: float | None = None
         self._surface = self._mist = self._flood = False
         self._unlocked = None
+        self._splines = [np.empty((0, 4, 3))]
         self._kept_path = (PathMode.BLEND_DEFAULT, [0.0, 0.0])
 
     def program(self, lines: int) -> Program:
@@ -97,6 +98,7 @@ class Builder(SpecialMoves):
             start=self._start.copy(),
             moves=self._moves[: self._count],
             actions=tuple(self._actions),
+            splines=np.concatenate(self._splines),
         )
 
     # --- moves

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trochia.errors import ProgramError, Source
-from trochia.geometry.biarc import biarcs
+from trochia.geometry.cubics import cubics, lengths
 from trochia.geometry.nurbs import Nurbs
-from trochia.program import MoveKind, PathMode, Plane, Probe, SpindleLock, TimeLaw, Unfinished
+from trochia.program import MoveKind, PathMode, Probe, SpindleLock, TimeLaw, Unfinished
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -23,30 +23,34 @@ if TYPE_CHECKING:
     from trochia.languages.gcode.sink import Position
     from trochia.program import Action
 
-SPLINE_TOLERANCE = 1e-3  #: mm by which the arcs of a spline may leave it
+SPLINE_TOLERANCE = 1e-4  #: mm by which the cubics of a rational curve may leave it
 _NO_CENTRE = (0.0, 0.0)
+_FARTHEST = 1e100  # whose square is still a number
 
 
 def require_finite(moves: NDArray[Any], name: str) -> None:
     """Raise a ProgramError where a move ends beyond what a number can hold."""
     wrong = ~np.isfinite(moves["target"]).all(axis=1)
     if wrong.any():
-        raise ProgramError(
-            "this move would end at a point that is not finite",
-            source=Source(name, int(moves["line"][wrong.argmax()])),
-            hint="Check the numbers it is made of.",
-        )
+        raise _not_finite(name, int(moves["line"][wrong.argmax()]))
+
+
+def _not_finite(name: str, line: int) -> ProgramError:
+    return ProgramError("this move would end at a point that is not finite", source=Source(name, line),
+                        hint="Check the numbers it is made of.")  # fmt: skip
 
 
 class SpecialMoves:
     """Splines, moves locked to the spindle, probing, and the path mode of canned cycles."""
 
     line: int
+    _name: str
     _placement: Placement
     _actions: list[Action]
     _direction: int
     _speed: float | None
     _unlocked: tuple[int, float, float, int] | None  # law, feed, its unit, path mode before a lock
+    _splines: list[NDArray[np.float64]]  # control points, machine coordinates
     _kept_path: tuple[PathMode, list[float]]
 
     @property
@@ -80,21 +84,35 @@ class SpecialMoves:
         self._placement.path_mode, self._placement.tolerance = self._kept_path
 
     def nurbs_feed(self, points: Sequence[tuple[float, float, float]], order: int, target: Position) -> None:
-        """Take a curve as arcs that touch each other, within :data:`SPLINE_TOLERANCE`."""
+        """Take a curve as the cubics it is, or, where it is none, as cubics within :data:`SPLINE_TOLERANCE`."""
         placement = self._placement
+        if max(abs(number) for point in points for number in point) > _FARTHEST:
+            raise _not_finite(self._name, self.line)
         curve = Nurbs(np.array(points), order)
-        pieces = biarcs(curve.at, curve.spans, SPLINE_TOLERANCE / placement.scale)
-        length = sum(piece.length for piece in pieces)
+        pieces = cubics(curve.at, curve.spans, SPLINE_TOLERANCE / placement.scale)
+        pieces = pieces[(pieces != pieces[:, :1]).any(axis=(1, 2))]
         self._flush()
-        plane, feed = placement.plane, placement.feed
-        placement.plane = Plane.XY
-        for piece in pieces:
-            end = [*piece.end, *target[2:]] if piece is not pieces[-1] else target
+        feed, size = placement.feed, lengths(pieces)
+        rows = self._keep_splines(pieces, target)
+        for row, (piece, length) in enumerate(zip(pieces, size, strict=True)):
+            end = target if row == len(pieces) - 1 else [*piece[-1].tolist(), *target[2:]]
             if placement.law == TimeLaw.INVERSE:
-                placement.feed = feed * length / piece.length
-            self._add(MoveKind.ARC if piece.centre else MoveKind.FEED, end, piece.centre or _NO_CENTRE, piece.sense)
+                placement.feed = feed * float(size.sum() / length)
+            self._add(MoveKind.SPLINE, end, _NO_CENTRE, rows + row)
         self._flush()
-        placement.plane, placement.feed = plane, feed
+        placement.feed = feed
+
+    def _keep_splines(self, pieces: NDArray[np.float64], target: Position) -> int:
+        """Keep control points (k, 4, 2) of the program as those of the machine; return the row of the first."""
+        placement, rows = self._placement, sum(map(len, self._splines))
+        shift, origin = np.array(list(placement.shift)), np.array(list(placement.origin))
+        across, up = np.moveaxis(pieces + shift[:2], 2, 0)
+        machine = np.empty((*pieces.shape[:2], 3))
+        machine[..., 0] = placement.cosine * across - placement.sine * up + origin[0]
+        machine[..., 1] = placement.sine * across + placement.cosine * up + origin[1]
+        machine[..., 2] = target[2] + shift[2] + origin[2]
+        self._splines.append(machine * placement.scale)
+        return rows
 
     def set_spline_time(self, per_minute: float) -> None:
         """Let the next curve last 1/F minutes."""
