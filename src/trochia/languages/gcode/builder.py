@@ -316,7 +316,8 @@ class Builder(SpecialMoves):
     def orient_spindle(self, degrees: float, direction: int) -> None:
         """Turn the spindle to an angle, where it stays."""
         self._direction = 0
-        self._actions.append(Orient(at=self._at, line=self.line, angle=degrees, way=direction, timeout=None))
+        way = min(direction, 2)  # 3 is G87's own number for counter-clockwise
+        self._actions.append(Orient(at=self._at, line=self.line, angle=degrees, way=way, timeout=None))
 
     def feed_override(self, *, on: bool) -> None:
         """Let the operator change the feed, or not."""

@@ -14,7 +14,7 @@ from trochia.languages.gcode.cycles.hole import hole_cycle
 if TYPE_CHECKING:
     from trochia.languages.gcode.cycles.hole import Hole
 
-_EITHER_WAY = 2  # the spindle may turn to its angle either way
+_SAME_WAY = {1: 2, -1: 3}  # how the reference says that the spindle turns to its angle the way it runs
 
 
 def bore(hole: Hole) -> None:
@@ -45,14 +45,14 @@ def bore_from_behind(hole: Hole) -> None:
     beside = {"first": first, "second": second}
     sink.straight_traverse(hole.point(hole.clear, **beside))
     sink.stop_spindle()
-    sink.orient_spindle(0.0, _EITHER_WAY)
+    sink.orient_spindle(0.0, _SAME_WAY[state.direction])
     sink.straight_traverse(hole.point(hole.bottom, **beside))
     hole.rapid(hole.bottom)
     sink.start_spindle(state.direction)
     hole.feed(back if state.absolute else hole.bottom + back)
     hole.feed(hole.bottom)
     sink.stop_spindle()
-    sink.orient_spindle(0.0, _EITHER_WAY)
+    sink.orient_spindle(0.0, _SAME_WAY[state.direction])
     sink.straight_traverse(hole.point(hole.bottom, **beside))
     sink.straight_traverse(hole.point(hole.back, **beside))
     hole.rapid(hole.back)
