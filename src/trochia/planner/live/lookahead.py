@@ -30,9 +30,11 @@ SETTLE = 2.0  #: settling time, in worst stopping times: on bends less than the 
 WARM = 3.0  #: how far behind a window begins, in the same
 WINDOW = 40.0  #: how much a window adds, in the same, where motion may yet be told to change
 FIRST = 5.0  #: and the first, so that motion begins soon
+_SAME_PLACE = 1e-9  #: mm or degree
 _SAME_SPEED = 1e-9  #: of each other
 _SAME_ACCELERATION = 1e-7  #: of the limit
 _BLOCK = 8192
+_LOOK = 256  #: phases that are looked through at a time
 
 
 class Lookahead:
@@ -182,14 +184,12 @@ class Lookahead:
     def forget(self, t: float) -> int:
         """Drop phases that end before ``t`` and that no further window needs; return how many."""
         most = self.safe_time - 4.0 * WARM * self._stop
-        joints = _joints(self.phases)
-        behind = joints[self.phases["t"][joints] <= min(t, most)]
-        drop = int(behind[-1]) if len(behind) else 0
+        drop = _joint_before(self.phases, min(t, most), 0)
         if drop:
             self.phases = self.phases[drop:].copy()
             self.safe -= drop
             self.road.trim(int(self.phases["segment"][0]))
-        return drop
+        return drop or 0
 
     def _end_of(self, count: int) -> float:
         if not count:
@@ -205,7 +205,8 @@ class Lookahead:
             phases = _still(self.road, start)
         if self._rested and start == self._start:
             phases = phases[phases["flags"].argmin() :]
-        return _dated(phases, t)
+        phases["t"] += t - phases["t"][0]
+        return phases
 
     def _reach(self, row: int, times: float) -> int:
         """Return the row some (worst stopping) times after ``row`` at least, if all went at full speed."""
@@ -229,10 +230,9 @@ class Lookahead:
         if self.finished:
             self.safe = len(self.phases)
             return
-        joints = _joints(self.phases)
-        settled = (self.phases["t"][joints] <= self.end_time - SETTLE * self._stop) & (joints >= least)
-        if settled.any():
-            self.safe = max(self.safe, int(joints[settled][-1]))
+        joint = _joint_before(self.phases, self.end_time - SETTLE * self._stop, max(self.safe, least))
+        if joint is not None:
+            self.safe = joint
 
     def _join(self) -> None:
         """Plan to the new end, and go on so where both plans agree."""
@@ -240,17 +240,18 @@ class Lookahead:
         if joint == 0:
             self.phases = self._from(self._start, self._begin)
             return
-        joints, t = _joints(old), float(old["t"][joint])
+        t = float(old["t"][joint])
         warm = WARM * self._stop
         while True:
-            behind = joints[old["t"][joints] <= t - warm]
-            start = Place(int(old["segment"][behind[-1]]), 0.0) if len(behind) else self._first()
+            behind = _joint_before(old, t - warm, 0)
+            start = self._first() if behind is None else Place(int(old["segment"][behind]), 0.0)
             new = self._from(start, 0.0)
             if self._splice(new, [joint]):
                 return
-            if not len(behind):
+            if behind is None:
                 break
             warm *= 2.0
+        joints = _joints(old)
         if not self._splice(new, [int(k) for k in joints[joints > joint]]):
             rest = self.end_time
             self.phases = np.concatenate([old, self._from(Place(int(old["segment"][-1]) + 1, 0.0), rest)])
@@ -265,19 +266,20 @@ class Lookahead:
 
     def _splice(self, new: NDArray[Any], joints: list[int]) -> bool:
         """Go on as ``new`` from the first of some joints where it agrees with the phases in hand; False: nowhere."""
-        begins = _joints(new)
-        rows = new["segment"][begins]
         for joint in joints:
             here = self.phases[joint]
-            at = int(np.searchsorted(rows, here["segment"]))
-            k = int(begins[min(at, len(begins) - 1)])
-            if new["segment"][k] == here["segment"] and self._agree(here, new[k]):
-                self.phases = np.concatenate([self.phases[:joint], _dated(new[k:], float(here["t"]))])
+            k = int(np.searchsorted(new["segment"], here["segment"]))
+            while k < len(new) and new["flags"][k] & 1:
+                k += 1
+            if k < len(new) and new["segment"][k] == here["segment"] and self._agree(here, new[k]):
+                rest = new[k:]
+                rest["t"] += here["t"] - rest["t"][0]
+                self.phases = np.concatenate([self.phases[:joint], rest])
                 return True
         return False
 
     def _agree(self, here: NDArray[Any], there: NDArray[Any]) -> bool:
-        if abs(here["v"] - there["v"]) > _SAME_SPEED * (here["v"] + there["v"]):
+        if there["s"] > _SAME_PLACE or abs(here["v"] - there["v"]) > _SAME_SPEED * (here["v"] + there["v"]):
             return False
         small = _SAME_ACCELERATION * float(self.rules.limits.acceleration.min())
         return not self.rules.jerk_limited or bool(abs(here["a"] - there["a"]) <= small)
@@ -297,8 +299,23 @@ def _joints(phases: NDArray[Any]) -> NDArray[np.intp]:
     segments = phases["segment"][moving]
     fresh = np.ones(len(moving), dtype=np.bool_)
     fresh[1:] = segments[1:] != segments[:-1]
-    fresh &= phases["s"][moving] <= 1e-9
+    fresh &= phases["s"][moving] <= _SAME_PLACE
     return moving[fresh]
+
+
+def _joint_before(phases: NDArray[Any], t: float, least: int) -> int | None:
+    """Return the last phase, ``least`` or later, that begins where its segment does, in motion and not after ``t``."""
+    end = int(np.searchsorted(phases["t"], t, side="right"))
+    first = end
+    while first > least:
+        first = max(least, first - _LOOK)
+        before = max(first - 1, 0)
+        joints = _joints(phases[before:end]) + before
+        joints = joints[(joints > before) | (joints == 0)]  # of the first in sight it is not known
+        joints = joints[joints >= least]
+        if len(joints):
+            return int(joints[-1])
+    return None
 
 
 def _still(road: Road, start: Place) -> NDArray[Any]:

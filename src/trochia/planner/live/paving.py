@@ -138,7 +138,7 @@ class _Paver:
         lines, power = program.moves["line"][rows["move"]], program.moves["power"][rows["move"]]
         rows["data"] -= np.uint64(low)
         rows["move"] += np.uint32(base)
-        return Stretch(segments=rows, pool=path.pool[low:high].copy(), lines=lines, power=power,
+        return Stretch(segments=rows, pool=path.pool[low:high], lines=lines, power=power,
                        rests=rests.segments[kept] - np.uint64(first), seconds=rests.seconds[kept],
                        start=path.start)  # fmt: skip
 

@@ -24,7 +24,7 @@ def size_of(kind: int, axes: int) -> int:
 def rows_of(
     segments: NDArray[Any], pool: NDArray[np.float64], first: int, end: int, axes: int
 ) -> tuple[NDArray[Any], NDArray[np.float64]]:
-    """Return copies of the segments ``first`` up to ``end`` and of their coefficients, with a pool of their own."""
+    """Return copies of the segments ``first`` up to ``end``, and a view of their coefficients as their pool."""
     rows = segments[first:end].copy()
     if not len(rows):
         return rows, np.zeros(0)
@@ -32,7 +32,7 @@ def rows_of(
     low = int(rows["data"].min())
     high = int(rows["data"][last]) + size_of(int(rows["kind"][last]), axes)
     rows["data"] -= np.uint64(low)
-    return rows, pool[low:high].copy()
+    return rows, pool[low:high]
 
 
 def shifted(kind: int, c: NDArray[np.float64], axes: int, s: float) -> NDArray[np.float64]:

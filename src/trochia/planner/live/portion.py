@@ -48,12 +48,11 @@ class Portion:
     def of(cls, road: Road, phases: NDArray[Any], *, backwards: bool = False) -> Portion:
         """Return phases (of which there is at least one), counted by a road's rows, with what they need of it."""
         first, end = int(phases["segment"][0]), int(phases["segment"][-1]) + 1
-        segments, pool = road.slice(first, end)
         inside = slice(first - road.base, end - road.base)
         phases = phases.copy()
         phases["segment"] -= np.uint32(first)
-        return cls(axes=road.axes, first=first, segments=segments, pool=pool, lines=road.lines[inside].copy(),
-                   power=road.power[inside].copy(), phases=phases, backwards=backwards)  # fmt: skip
+        return cls(axes=road.axes, first=first, segments=road.segments[inside], pool=road.pool,
+                   lines=road.lines[inside], power=road.power[inside], phases=phases, backwards=backwards)  # fmt: skip
 
     @property
     def begin(self) -> float:

@@ -129,13 +129,14 @@ class Road:
         drop = row - self.base
         if 2 * drop <= len(self.segments):
             return
-        self.segments, self.pool = rows_of(self.segments, self.pool, drop, len(self.segments), len(self.axes))
+        self.segments, pool = rows_of(self.segments, self.pool, drop, len(self.segments), len(self.axes))
+        self.pool = pool.copy()
         self.lines, self.power = self.lines[drop:].copy(), self.power[drop:].copy()
         kept = self.rests >= row
         self.rests, self.seconds, self.base = self.rests[kept], self.seconds[kept], row
 
     def slice(self, first: int, end: int) -> tuple[NDArray[Any], NDArray[np.float64]]:
-        """Return copies of rows ``first`` up to ``end`` and of their coefficients."""
+        """Return copies of rows ``first`` up to ``end``, and a view of their coefficients."""
         return rows_of(self.segments, self.pool, first - self.base, end - self.base, len(self.axes))
 
     def rests_between(self, first: int, end: int) -> tuple[NDArray[np.uint64], NDArray[np.float64]]:

@@ -85,8 +85,10 @@ def plan_window(road: Road, rules: Rules, start: Place, end: int, speeds: Speeds
         where, seconds = where[ahead], seconds[ahead]
     path = Toolpath(axes=road.axes, start=np.zeros(axes), segments=rows, pool=pool)
     schedule: Schedule = rules.profile(path, rules.limits, Rests(segments=where, seconds=seconds, times={}))
-    phases = np.concatenate(list(schedule.phases(_BLOCK)))
-    phases["s"][phases["segment"] == 0] += start.s
+    blocks = list(schedule.phases(_BLOCK))
+    phases = blocks[0] if len(blocks) == 1 else np.concatenate(blocks)
+    if start.s > 0.0:
+        phases["s"][phases["segment"] == 0] += start.s
     phases["segment"] += np.uint32(start.row)
     return phases
 
