@@ -55,7 +55,7 @@ def gcode(
     ProgramError
         At the first wrong line, with what to do about it.
     """
-    reading = reading or language.Reading()
+    reading = _for_machine(reading, machine)
     work = reading.work.placed(**(at or {}))
     return language.read(text, name=name, work=work, start=_start(machine), reading=reading)
 
@@ -106,7 +106,7 @@ def check(
     def remark(line: int, message: str) -> None:
         remarks.append(Problem(severity=Severity.WARNING, code="dialect", file=name, line=line, message=message))
 
-    reading = replace(reading or language.Reading(), on_remark=remark)
+    reading = replace(_for_machine(reading, machine), on_remark=remark)
     try:
         made = make(gcode(text, machine, at=at, name=name, reading=reading), machine, profile=profile)
     except ProgramError:
@@ -144,6 +144,14 @@ def simulate(planned: Plan, folder: str | Path | None = None, *, period: float |
         return recorder.gather(header, blocks)
     recorder.write(folder, header, blocks)
     return recorder.read(folder)
+
+
+def _for_machine(reading: language.Reading | None, machine: Machine | None) -> language.Reading:
+    """Return how a program is read, in the machine's dialect where nothing else is said."""
+    reading = reading or language.Reading()
+    if machine is None or reading.dialect is not None:
+        return reading
+    return replace(reading, dialect=language.DIALECTS[machine.dialect])
 
 
 def _start(machine: Machine | None) -> tuple[float, ...]:

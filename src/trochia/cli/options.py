@@ -70,13 +70,19 @@ def reading(command: Callable[..., Any]) -> Callable[..., Any]:
     command = setup.files(command)
 
     @functools.wraps(command)
-    def with_reading(*, subroutines: tuple[Path, ...], max_lines: int | None, dialect: str, **values: Any) -> Any:  # noqa: ANN401 - click's
+    def with_reading(
+        *, subroutines: tuple[Path, ...], max_lines: int | None, dialect: str | None,
+        **values: Any,  # noqa: ANN401 - click's
+    ) -> Any:  # noqa: ANN401 - click's  # fmt: skip
         from trochia.languages.gcode.dialects import DIALECTS  # noqa: PLC0415 - `trochia --help` must stay light
         from trochia.languages.gcode.reading import MOST_LINES, Reading  # noqa: PLC0415 - `trochia --help` must stay light
 
         program = str(values.get("program", "-"))
         own = () if program == "-" else (Path(program).parent,)
-        found = Reading(subroutines=subroutines or own, most_lines=max_lines or MOST_LINES, dialect=DIALECTS[dialect])
+        found = Reading(
+            subroutines=subroutines or own, most_lines=max_lines or MOST_LINES,
+            dialect=None if dialect is None else DIALECTS[dialect],
+        )  # fmt: skip
         return command(reading=found, **values)
 
     decorated = click.option(
@@ -84,8 +90,8 @@ def reading(command: Callable[..., Any]) -> Callable[..., Any]:
         help="Lines a program may execute before its loops count as endless; ten millions unless given.",
     )(with_reading)  # fmt: skip
     decorated = click.option(
-        "--dialect", type=click.Choice(DIALECT_NAMES), default="linuxcnc", show_default=True,
-        help="Whose G-code it is.",
+        "--dialect", type=click.Choice(DIALECT_NAMES),
+        help="Whose G-code it is; without it the machine's, else linuxcnc.",
     )(decorated)  # fmt: skip
     return click.option(
         "--subroutines", multiple=True, metavar="DIR", type=click.Path(exists=True, file_okay=False, path_type=Path),

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 #: velocity profiles a machine may ask for
 PROFILES = ("trapezoid", "s-curve", "torque")
+DIALECTS = ("linuxcnc", "grbl", "fanuc", "marlin")  #: those of the G-code reader
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,6 +38,8 @@ class Machine:
         What a tool change costs [s].
     tools, parameters
         Files that G-code programs find set up, in LinuxCNC's formats; paths are relative to the machine file.
+    dialect
+        Whose G-code its programs are in, a name of :data:`DIALECTS`.
     allow_user_m_codes
         Whether M100 to M199 may be called.
     profile
@@ -76,6 +79,7 @@ class Machine:
     parameters: str | None = field(
         default=None, metadata=key(Text(), "offsets and variables in LinuxCNC's .var format, beside the machine file")
     )
+    dialect: str = field(default="linuxcnc", metadata=key(Text(DIALECTS), "whose G-code its programs are in"))
     allow_user_m_codes: bool = field(
         default=False, metadata=key(Flag(), "M100 to M199 of G-code programs are codes of this machine")
     )

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from mmap import mmap
 
+    from trochia.languages.gcode.dialects import Dialect
     from trochia.languages.gcode.sink import Sink
     from trochia.languages.gcode.state import State
     from trochia.languages.gcode.walk import OnError
@@ -98,8 +99,8 @@ def blocks(
     ProgramError
         Where the reference rejects the program.
     """
-    if reading.dialect is not LINUXCNC:
-        text = _adapted(text, reading, name)
+    if reading.dialect is not None and reading.dialect is not LINUXCNC:
+        text = _adapted(text, reading.dialect, reading, name)
     work = work or reading.work
     state = begin(work, start)
     for number, value in work.variables.items():
@@ -125,9 +126,9 @@ def blocks(
         sink.on_reset()
 
 
-def _adapted(text: bytes | mmap, reading: Reading, name: str) -> bytes:
+def _adapted(text: bytes | mmap, dialect: Dialect, reading: Reading, name: str) -> bytes:
     """Return a text of another dialect in this language, and hand its remarks over."""
-    adapted, remarks = adapt(text[:], reading.dialect, name=name)
+    adapted, remarks = adapt(text[:], dialect, name=name)
     for remark in remarks:
         if reading.on_remark is not None:
             reading.on_remark(remark.line, remark.message)

@@ -6,11 +6,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from trochia.languages.gcode.dialects import LINUXCNC, Dialect
 from trochia.program.work import WorkState
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+    from trochia.languages.gcode.dialects import Dialect
 
 OnEnd = Callable[[WorkState], None]
 OnRemark = Callable[[int, str], None]
@@ -35,7 +36,8 @@ class Reading:
     ini
         Values of an ini file by section and name, in capitals.
     dialect
-        Whose language the program is in; files with subroutines are in LinuxCNC's.
+        Whose language the program is in; None: the machine's, or else LinuxCNC's.  Files with subroutines are in
+        LinuxCNC's.
     on_remark
         Is given what a dialect's program means otherwise: line and message.
     on_end
@@ -47,7 +49,7 @@ class Reading:
     work: WorkState = field(default_factory=WorkState)
     startup: str = ""
     ini: Mapping[tuple[str, str], str] = field(default_factory=dict[tuple[str, str], str])
-    dialect: Dialect = LINUXCNC
+    dialect: Dialect | None = None
     on_remark: OnRemark | None = None
     on_end: OnEnd | None = None
 
