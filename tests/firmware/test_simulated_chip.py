@@ -122,3 +122,13 @@ def test_an_analogue_input(start: Callable[[str], SimulatedChip], image: Callabl
         chip.set_analogue(3, millivolts)
         chip.run_until(chip.run_until(0).cycle + 120_000)
         assert int.from_bytes(chip.read_memory(place, 2), "little") == pytest.approx(millivolts * 1024 / 5000, abs=1)
+
+
+@pytest.mark.parametrize(("name", "state"), [("lost", "crashed"), ("halted", "stopped"), ("counted", "runs")])
+def test_how_a_program_ends(start: Callable[[str], SimulatedChip], name: str, state: str):
+    assert start(name).run_until(50_000).state == state
+
+
+def test_a_simulator_that_is_not_there_is_named(tmp_path: Path):
+    with pytest.raises(LinkError, match="cannot be started"):
+        SimulatedChip(tmp_path / "chip", tmp_path / "image.elf")
