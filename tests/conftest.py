@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections import Counter
+
+import pytest
 from hypothesis import HealthCheck, settings
 
 # the checks run the same seeded sample each time; `make soak` runs a hundred times as many, freshly drawn
@@ -10,3 +13,29 @@ settings.register_profile("check", max_examples=60, deadline=None, derandomize=T
 settings.register_profile("soak", max_examples=6000, deadline=None, print_blob=True,
                           suppress_health_check=[HealthCheck.too_slow])  # fmt: skip
 settings.load_profile("check")
+
+_compared = Counter[str]()  # programs compared with rs274 by all processes, see oracle/conftest.py
+
+
+def pytest_sessionfinish(session):
+    """Add up the programs this process has compared."""
+    asked = getattr(session.config, "compared_with_rs274", {})
+    if hasattr(session.config, "workeroutput"):
+        session.config.workeroutput["compared_with_rs274"] = dict(asked)
+    else:
+        _compared.update(asked)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node):
+    """Add up the programs a worker has compared."""
+    _compared.update(getattr(node, "workeroutput", {}).get("compared_with_rs274", {}))
+
+
+def pytest_terminal_summary(terminalreporter):
+    """Tell how many programs were compared with LinuxCNC's interpreter."""
+    if _compared:
+        terminalreporter.write_line(
+            f"compared with rs274: {_compared['generated']} generated and {_compared['written']} written programs, "
+            f"{_compared['accepted']} of them accepted"
+        )

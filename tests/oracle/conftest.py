@@ -7,10 +7,12 @@ import re
 import shutil
 import subprocess
 import tempfile
+from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+from hypothesis import currently_in_test_context
 
 from trochia.errors import ProgramError
 from trochia.languages.gcode.canon import Canon
@@ -19,8 +21,10 @@ from trochia.program import WorkState
 
 RS274 = shutil.which("rs274")
 TOLERANCE = 1.001e-4  # both round to four decimals
+PRECISION = 1e-12  # of numbers beyond any machine, which powers and logarithms make
 _COLUMNS = re.compile(r"^ *\d+ (?:N\.{5}|N\d+|N {5}) *(?=[A-Z])")  # counter and line number
 _ASIDE = ("executing", "num_spindles")  # what it says beside the error
+_ASKED = Counter[str]()  # programs compared, by where they come from
 _NUMBER = re.compile(r"-?\d+\.\d+")
 
 
@@ -82,7 +86,7 @@ def alike(left: str, right: str) -> bool:
     if _NUMBER.sub("#", left) != _NUMBER.sub("#", right):
         return False
     pairs = zip(_NUMBER.findall(left), _NUMBER.findall(right), strict=True)
-    return all(abs(float(a) - float(b)) <= TOLERANCE for a, b in pairs)
+    return all(abs(float(a) - float(b)) <= max(TOLERANCE, PRECISION * abs(float(a))) for a, b in pairs)
 
 
 def compare(
@@ -91,6 +95,8 @@ def compare(
 ) -> None:  # fmt: skip
     """Assert that we accept or reject a program as the reference does, at the same line, with the same output."""
     judge = reference(text, variables, tools, seconds=seconds)
+    _ASKED["generated" if currently_in_test_context() else "written"] += 1
+    _ASKED["accepted"] += judge.rejected is None
     for fast in (False, True):
         run = ours(text, fast=fast, work=work or WorkState())
         for number, (theirs, mine) in enumerate(zip(judge.lines, run.lines, strict=False)):
@@ -109,10 +115,11 @@ def _sought_in_vain(theirs: str, ours: str) -> bool:
 
 
 @pytest.fixture(scope="session")
-def agree():
-    """Return :func:`compare`, or skip where the reference is not installed."""
+def agree(request):
+    """Return :func:`compare`, or skip where the reference is not installed; the session tells how many were asked."""
     if RS274 is None:
         pytest.skip("LinuxCNC's rs274 is not installed (Debian package linuxcnc-uspace)")
+    request.config.compared_with_rs274 = _ASKED
     return compare
 
 

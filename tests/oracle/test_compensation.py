@@ -10,13 +10,15 @@ from __future__ import annotations
 from math import cos, pi, radians, sin
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from trochia.program import WorkState
 from trochia.program.tool_file import read_tools
 
 pytestmark = pytest.mark.oracle
+
+MANY = settings(max_examples=3 * settings().max_examples)
 
 TOOLS = "T1 P1 D.1\nT2 P2 D.2 Q3\nT3 P3 D-.1\n"
 WORK = WorkState(unit=25.4, tools=read_tools(TOOLS, "t", unit=25.4))
@@ -112,6 +114,7 @@ def contours(draw: st.DrawFn) -> list[str]:
     return [*lines, "g40", draw(st.sampled_from(["g94 g0 x50 y50 z9", "g94 f9 g1 x3", "g94 f9 g2 x9 y1 i1", "m0"]))]
 
 
+@MANY
 @given(lines=contours())
 def test_contours_agree(agree, lines):
     _check(agree, lines)

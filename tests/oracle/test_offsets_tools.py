@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from trochia.program import WorkState
@@ -18,6 +18,8 @@ from trochia.program.parameter_file import read_variables, work_from
 from trochia.program.tool_file import read_tools
 
 pytestmark = pytest.mark.oracle
+
+MANY = settings(max_examples=2 * settings().max_examples)
 
 INCH = 25.4
 TOOLS = """T1 P1 Z0.5 D0.25 ;first
@@ -72,6 +74,7 @@ WRONG = _of(
 GOOD = st.one_of(ORIGINS, LENGTHS, MOVES, MODES, MACHINE)
 
 
+@MANY
 @given(first=FIRST, lines=st.lists(GOOD, min_size=3, max_size=14), last=st.one_of(st.just(""), WRONG))
 def test_offsets_and_tools_agree(agree, first, lines, last):
     # The stand-alone reference does not turn the point where it starts, so the first line gives the point anew.
@@ -79,6 +82,7 @@ def test_offsets_and_tools_agree(agree, first, lines, last):
     agree(text.encode(), variables=VARIABLES, tools=TOOLS, work=WORK)
 
 
+@MANY
 @given(lines=st.lists(st.one_of(ORIGINS, MOVES, TABLE, _of("g20", "g21", "g90", "g91")), min_size=2, max_size=12))
 def test_offsets_in_both_units_agree(agree, lines):
     text = "\n".join(["g53 g0 x0 y0 z0 a0 b0 c0 f100", *lines, "m2", ""])

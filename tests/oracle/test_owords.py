@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 pytestmark = pytest.mark.oracle
 
-FEW = settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+MANY = settings(max_examples=2 * settings().max_examples)
 
 # --- expressions
 
@@ -37,14 +37,14 @@ VALUE = st.recursive(st.one_of(LITERAL, NAMED), _wider, max_leaves=6)
 SET_UP = ["#1=2 #2=3 #3=-1.5", "#<a>=4", "#<_g>=.5", "#<ab>=7", "g1 f100 x1 y2"]
 
 
-@FEW
+@MANY
 @given(values=st.lists(VALUE, min_size=1, max_size=8))
 def test_expressions_agree(agree, values):
     lines = [f"x{value}"[:250] for value in values]
     agree("\n".join([*SET_UP, *lines, "m2", ""]).encode("latin-1"))
 
 
-@FEW
+@MANY
 @given(text=st.text(st.sampled_from("[]#<>a_12.+-*/= xyexistsmod"), min_size=1, max_size=14))
 def test_random_characters_of_expressions_agree(agree, text):
     if "<" in text and ">" not in text.partition("<")[2]:
@@ -58,7 +58,7 @@ SETTING = st.builds(lambda target, value: f"{target}={value}", TARGET, st.one_of
 SHOWN = "(debug,#1 #2 %d#30 %.2f#<a> #<b> %f#<_g> #<_new> #5000)"
 
 
-@FEW
+@MANY
 @given(lines=st.lists(st.lists(SETTING, min_size=1, max_size=3).map(" ".join), min_size=1, max_size=6))
 def test_assignments_agree(agree, lines):
     agree("\n".join([*SET_UP, *(text for line in lines for text in (line[:250], SHOWN)), "m2", ""]).encode("latin-1"))
@@ -122,7 +122,7 @@ def program(draw: st.DrawFn) -> list[str]:
     return ["f100 g1 x0", "#<a>=0", *one, *lines, "m2", *two, "o900", "#2=[#2+1]", "g0 y#2", "m99"]
 
 
-@FEW
+@MANY
 @given(lines=program())
 def test_programs_with_o_words_agree(agree, lines):
     agree("\n".join([*lines, ""]).encode("latin-1"))
@@ -139,7 +139,7 @@ PLAIN = st.sampled_from(["g0 x1", "(debug,#1)", "#2=[#2+1]", "m98 p1", "m99", "m
 
 
 # ELSE with a value behind it is taken by the reference, and a repeat left by RETURN begins where it was
-@FEW
+@MANY
 @given(lines=st.lists(st.one_of(WILD, WILD, PLAIN), min_size=1, max_size=6))
 def test_wild_o_words_agree(agree, lines):
     text = "\n".join(["#1=1", *lines, "m2", ""])

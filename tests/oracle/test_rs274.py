@@ -7,12 +7,14 @@ import runpy
 from pathlib import Path
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from trochia.program import WorkState
 
 pytestmark = pytest.mark.oracle
+
+MANY = settings(max_examples=2 * settings().max_examples)
 
 HERE = Path(__file__).parent
 SNIPPETS = [
@@ -141,11 +143,13 @@ POLAR = st.one_of(
 GOOD = st.one_of(STRAIGHT, STRAIGHT, ARC_BY_RADIUS, arc_by_centre(), MODES, MODES, POLAR, OFFSETS, TEXTS)
 
 
+@MANY
 @given(lines=st.lists(GOOD, min_size=5, max_size=40), last=st.one_of(st.just("m2"), st.just("m30"), WILD))
 def test_programs_agree(agree, lines, last):
     agree("\n".join(["g0 x0 y0 f100 s100", *lines, last, "m2", ""]).encode("latin-1"))
 
 
+@MANY
 @given(lines=st.lists(st.one_of(MODES, WILD), min_size=1, max_size=6))
 def test_wild_programs_agree(agree, lines):
     agree("\n".join([*lines, "m2", ""]).encode("latin-1"))
@@ -155,6 +159,7 @@ def test_wild_programs_agree(agree, lines):
 CHARACTERS = st.text(st.sampled_from("gxyzfmnijrp0123.-+ ()/;	e"), min_size=1, max_size=12)
 
 
+@MANY
 @given(text=CHARACTERS)
 def test_lines_of_random_characters_agree(agree, text):
     agree(f"g0 x1 f1\n{text}\nm2\n".encode("latin-1"))
@@ -183,6 +188,7 @@ def _stored(offsets: tuple[float, ...]) -> list[float]:
     return [value / 25.4 if axis in (0, 1, 2, 6, 7, 8) else value for axis, value in enumerate(offsets)]
 
 
+@MANY
 @given(
     lines=st.lists(st.one_of(STRAIGHT, ARC_BY_RADIUS, OFFSETS, _of("g54", "g55", "g20", "g21", "g90", "g91")),
                    min_size=1, max_size=12),
