@@ -149,3 +149,21 @@ def test_any_text_is_read_or_refused(text, dialect):
         return
     assert adapted.count(b"\n") >= text.count("\n")
     assert isinstance(gcode.problems(text, reading=Reading(dialect=dialect)), list)
+
+
+@pytest.mark.parametrize(
+    ("text", "same"),
+    [("G4 P1 2", "G4 P0.012"), ("G4 P--1500", "G4 P1.5"), ("G4 P - -20", "G4 P.02"), ("G4 P+.5", "G4 P0.0005"),
+     ("G 4 P1 500 (wait)", "G4 P1.5 (wait)"), ("G0 X1 0 Y - 2", "G0 X10 Y-2")],
+)  # fmt: skip
+def test_numbers_are_read_through_their_blanks_and_signs(text, same):
+    means(f"{text}\nM2\n", MARLIN, f"{same}\nM2\n")
+
+
+def test_a_mirrored_word_keeps_its_signs():
+    means("M70\nG1 F1 X--3 Y - 4\nX- 1 0\nM2\n", FANUC, "\nG1 F1 X-3 Y-4\nX10\nM2\n")
+
+
+def test_a_wait_of_negative_time_stays_one():
+    with pytest.raises(ParseError):
+        canon("G4 P-1\nM2\n", MARLIN)

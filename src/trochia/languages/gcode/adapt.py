@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 # comment, word with a number or an expression, letter alone, anything else
 _PIECE = re.compile(
-    r"(?P<comment>\([^()]*\)?|;.*)|(?P<letter>[a-z])[ \t]*(?P<value>[-+]?[0-9][0-9.]*|[-+]?\.[0-9]+|\[[^;()]*\])"
+    r"(?P<comment>\([^()]*\)?|;.*)|(?P<letter>[a-z])[ \t]*(?P<value>(?:[-+][ \t]*)*[0-9.](?:[ \t]*[0-9.])*|\[[^;()]*\])"
     r"|(?P<bare>[a-z])|(?P<other>.)",
     re.IGNORECASE,
 )
@@ -177,8 +177,17 @@ def _ended(text: bytes) -> bool:
 def _piece(match: re.Match[str]) -> _Word:
     letter, bare = match["letter"], match["bare"]
     if letter is not None:
-        return _Word(letter.lower(), match["value"], match[0])
+        return _Word(letter.lower(), _compact(match["value"]), match[0])
     return _Word("" if bare is None else bare.lower(), None, match[0])
+
+
+def _compact(value: str) -> str:
+    """Return a number as the language reads it, without its blanks and with one sign at most."""
+    if value.startswith("["):
+        return value
+    value = "".join(value.split())
+    digits = value.lstrip("+-")
+    return digits if value.count("-") % 2 == 0 else "-" + digits
 
 
 def _without_program_number(text: str) -> str:
