@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from trochia.errors import LimitError
 from trochia.kernels.ticks import speed_move
 from trochia.pulses.ramps import Demand, profile
 from trochia.pulses.ramps.austin import recursion
@@ -81,6 +82,15 @@ def test_timer_values(clock: float, steps_s: float, ticks: float, printed: float
         assert 1e6 / printed == pytest.approx(664.9, abs=0.05)
     _, states = speed_move(10**6, 10**6, (1, 3, 1), round(plan.shortest * 256))
     assert states.size == 5
+
+
+def test_the_first_delay_must_fit_the_timer():
+    """16 bits at 1 MHz hold 15.3 steps/s and more; the source's 1 MHz is fine for 30 rad/s², the board's 16 MHz is not."""
+    assert plan_move(600, 19.90, 30, 30, angle=ANGLE, register=16).first < 2**16
+    with pytest.raises(LimitError, match="494864 ticks, and a register of 16 bits holds 65535") as refused:
+        plan_move(600, 19.90, 30, 30, angle=ANGLE, clock=16e6, register=16)
+    assert "2.11889e+06 Hz" in str(refused.value.hint)
+    assert plan_move(600, 19.90, 30, 30, angle=ANGLE, clock=2e6, register=16).first < 2**16  # 16 MHz by 8
 
 
 def test_speed_of_a_timer_value():

@@ -56,7 +56,14 @@ class MovePlan:
 
 
 def plan_move(
-    steps: int, speed: float, acceleration: float, deceleration: float, *, angle: float, clock: float = 1e6
+    steps: int,
+    speed: float,
+    acceleration: float,
+    deceleration: float,
+    *,
+    angle: float,
+    clock: float = 1e6,
+    register: int | None = None,
 ) -> MovePlan:
     """Return what is computed before a move of ``steps`` steps.
 
@@ -68,14 +75,23 @@ def plan_move(
         Of a step [rad].
     clock
         Ticks a second [Hz].
+    register
+        Bits of the timer's compare register; None: as many as it takes.
 
     Raises
     ------
     LimitError
-        For a quantity that is not above 0.
+        For a quantity that is not above 0, and for a first delay that the register cannot hold.
     """
     if steps < 1 or not min(speed, acceleration, deceleration, angle, clock) > 0.0:
         raise LimitError("a move has steps, a speed and accelerations above 0")
+    first = clock * first_delay(acceleration / angle)
+    if register is not None and first >= 2**register:
+        raise LimitError(
+            f"the first delay is {first:.0f} ticks, and a register of {register} bits holds {2**register - 1}",
+            hint=f"A clock of at most {clock * (2**register - 1) / first:.6g} Hz would do, or at least "
+            f"{acceleration * (first / (2**register - 1)) ** 2:.4g} rad/s².",
+        )
     rising = int(speed**2 / (2.0 * angle * acceleration) + 1e-9)
     limit = int(steps * deceleration / (acceleration + deceleration) + 1e-9)
     # where the speed is reached, the source's text takes the limit here, which would brake far too early
@@ -83,7 +99,7 @@ def plan_move(
     return MovePlan(
         steps=steps,
         shortest=angle * clock / speed,
-        first=clock * first_delay(acceleration / angle),
+        first=first,
         rising=rising,
         limit=limit,
         braking=min(braking, -1) if steps > 1 else 0,
