@@ -85,7 +85,7 @@ def test_timer_values(clock: float, steps_s: float, ticks: float, printed: float
 
 
 def test_the_first_delay_must_fit_the_timer():
-    """16 bits at 1 MHz hold 15.3 steps/s and more; the source's 1 MHz is fine for 30 rad/s², the board's 16 MHz is not."""
+    """16 bits at 1 MHz hold 15.3 steps/s and more: fine for 30 rad/s²; the board's own 16 MHz is not."""
     assert plan_move(600, 19.90, 30, 30, angle=ANGLE, register=16).first < 2**16
     with pytest.raises(LimitError, match="494864 ticks, and a register of 16 bits holds 65535") as refused:
         plan_move(600, 19.90, 30, 30, angle=ANGLE, clock=16e6, register=16)
