@@ -16,6 +16,8 @@ from trochia.backends.driven_stepper import DrivenStepper, Levels
 from trochia.backends.stepper_twin import STEP
 from trochia.kernels.twin import TwinBlock, TwinJoint
 from trochia.machine.torque import drive
+from trochia.planner import Trajectory
+from trochia.planner.timed import fitted
 from trochia.pulses.steps import step_blocks
 
 if TYPE_CHECKING:
@@ -109,7 +111,7 @@ class PhysicalJoints:
     @classmethod
     def of(cls, machine: Machine, motion: Motion, *, period: float, slack: float) -> PhysicalJoints:
         """Return them at rest at the motion's start."""
-        steps = step_blocks(motion, machine)
+        steps = step_blocks(fitted(motion, machine) if isinstance(motion, Trajectory) else motion, machine)
         first = next(steps, None)
         start = machine.kinematics.matrix @ motion.path.start
         joints: dict[int, PhysicalJoint] = {}

@@ -18,6 +18,7 @@ from trochia.machine.resonance import SHAPERS as NAMES
 from trochia.machine.resonance import Resonance
 from trochia.planner import PROFILES, SHAPERS, plan
 from trochia.planner.shaping import train
+from trochia.planner.timed import fitted
 from trochia.toolpath import build
 
 MILL = load("reference-mill")
@@ -148,3 +149,16 @@ def test_shaped_motion_has_no_phases_along_the_path():
 def test_damping_beyond_a_swing_is_refused():
     with pytest.raises(ConfigError, match=r"at most 0\.9"):
         Resonance(frequency=40.0, damping=0.95)
+
+
+@pytest.mark.parametrize("profile", sorted(PROFILES))
+def test_cubics_in_its_place_have_phases_and_are_as_good_as_it(profile):
+    machine = shaped(MILL, X=resonance("zvd"), Y=resonance("zv", 25.0))
+    one = planned(CORNER, machine, profile)
+    cubics = fitted(one, machine)
+    t = np.linspace(0.0, one.duration, 7919)
+    assert np.abs(cubics.position(t) - one.position(t)).max() < 0.001**2 / 32 * 800.0 + 1e-7
+    assert sum(len(block) for block in cubics.blocks()) == math.ceil(one.duration / machine.servo_period)
+    assert (cubics.line_at(t) == one.line_at(t)).mean() > 0.99
+    plain = planned(CORNER, MILL, profile)
+    assert fitted(plain, MILL) is plain

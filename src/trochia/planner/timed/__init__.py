@@ -5,6 +5,7 @@ for is kept; :func:`plan_timed` makes a trajectory of them.
 """
 
 from trochia.planner.timed.excess import Excess, excesses
+from trochia.planner.timed.fitted import fitted
 from trochia.planner.timed.motion import plan_timed
 from trochia.planner.timed.pieces import Pieces, joined, rest
 from trochia.planner.timed.pvt import pvt
@@ -17,6 +18,7 @@ __all__ = [
     "Ramps",
     "blended",
     "excesses",
+    "fitted",
     "joined",
     "plan_timed",
     "pvt",
