@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from trochia.errors import ModalConflictError
+from trochia.errors import ModalConflictError, ProgramError
 from trochia.languages.gcode import read
 from trochia.program import (
     Coolant,
@@ -207,3 +207,18 @@ def test_a_full_turn_in_inches_is_as_long_as_in_mm():
     moves = build("G20 F1\nG2 I1").moves
     radius = math.dist(moves["centre"][0], moves["target"][0, :2])
     assert radius == pytest.approx(25.4)
+
+
+def test_what_a_program_says_reaches_the_operator():
+    program = build("#5 = 2\n(MSG, one)\n(DEBUG, #5)\n(PRINT, three)\n(LOGOPEN, log.txt)\n(LOG, %d#5)\n(LOGCLOSE)")
+    said = [(action.line, action.text.strip()) for action in program.actions if isinstance(action, Message)]
+    assert said == [(2, "one"), (3, "2.000000"), (4, "three"), (6, "2")]
+
+
+@pytest.mark.parametrize("name", ["/etc/passwd", "../log.txt", "a/../../b", "C:\\log.txt", "..\\log.txt", "", "  "])
+@pytest.mark.parametrize("word", ["LOGOPEN", "LOGAPPEND"])
+def test_a_log_outside_the_programs_folder_is_refused(word, name):
+    with pytest.raises(ProgramError, match="leads out") as caught:
+        build(f"G0 X1\n({word}, {name})")
+    assert caught.value.source is not None
+    assert caught.value.source.line == 2
