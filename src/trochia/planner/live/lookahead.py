@@ -57,6 +57,8 @@ class Lookahead:
         Whether the rest that stands before that place is over.
     window
         How much a window adds, in worst stopping times; None: :data:`WINDOW`.
+    rows
+        How many segments it adds at least, once windows have grown: few long ones are not worth a window.
     """
 
     def __init__(
@@ -69,13 +71,14 @@ class Lookahead:
         *,
         rested: bool = False,
         window: float | None = None,
+        rows: int = 0,
     ) -> None:
         self.road, self.rules, self.speeds = road, rules, speeds
         self.stopped = False
         self._start, self._begin, self._rested = start, t, rested
         self._feed = speeds.feed  # greatest that the phases in hand are planned for
         self._stop = rules.stopping_time
-        self._span, self._window = FIRST, WINDOW if window is None else window
+        self._span, self._window, self._rows = FIRST, WINDOW if window is None else window, rows
         self._end = self._reach(start.row, FIRST + SETTLE)
         self.phases = self._from(start, t)
         self.safe = 0
@@ -102,7 +105,7 @@ class Lookahead:
             return False
         before = self.safe
         while self.safe == before and not self.finished:
-            self._end = self._reach(self._end, self._span)
+            self._end = self._reach(self._end, self._span, self._rows if self._span >= self._window else 0)
             self._join()
             self._settle()
             self._span = min(2.0 * self._span, self._window)
@@ -208,17 +211,17 @@ class Lookahead:
         phases["t"] += t - phases["t"][0]
         return phases
 
-    def _reach(self, row: int, times: float) -> int:
-        """Return the row some (worst stopping) times after ``row`` at least, if all went at full speed."""
+    def _reach(self, row: int, times: float, least: int = 0) -> int:
+        """Return the row some (worst stopping) times after ``row``, if all went at full speed, and ``least`` rows."""
         road, wanted, end = self.road, times * self._stop, row
         limits = self.rules.limits
         most = min(float(np.linalg.norm(limits.velocity[: limits.matrix.shape[1]])), limits.path_velocity)
-        while wanted > 0.0:
+        while wanted > 0.0 or end < row + least:
             if end >= road.end and not road.more():
                 return road.end
             rows = road.segments[end - road.base : end - road.base + _BLOCK]
             times_of = np.cumsum(rows["length"] / np.minimum(rows["speed_limit"] * self.speeds.feed, most))
-            count = min(int(np.searchsorted(times_of, wanted)) + 1, len(rows))
+            count = min(max(int(np.searchsorted(times_of, wanted)) + 1, row + least - end), len(rows))
             wanted -= float(times_of[count - 1]) if count else 0.0
             end += count
         if end >= road.end:

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 
 WINDOW = 300.0  #: how much a window adds, in worst stopping times: long ones cost less to join
+_ROWS = 8_192  #: segments it adds at least
 
 
 class StreamPlanner:
@@ -50,7 +51,7 @@ class StreamPlanner:
 
     def __iter__(self) -> Iterator[Portion]:
         """Yield portions without a gap from t = 0 to the program's end."""
-        ahead = Lookahead(self.road, self.rules, Place(0, 0.0), 0.0, Speeds(), window=WINDOW)
+        ahead = Lookahead(self.road, self.rules, Place(0, 0.0), 0.0, Speeds(), window=WINDOW, rows=_ROWS)
         given = 0
         while True:
             if ahead.safe > given:
