@@ -16,11 +16,15 @@
 
 /* Speed falls and rises again within the lines: between two overlaps passed alike it needs 4 L of way. */
 static const double ROOM = 0.25;
+/* Where lines leave less than this of the range that P allows, an overlap gives way to a chain beside it, whose hats
+ * would have to leave out their last joints: turning by less than this. */
+static const double PART = 0.6, SHALLOW = 0.35;
 
 void trochia_overlap_want(const trochia_frame *frame, const trochia_curve *a, const trochia_curve *b,
                           trochia_turn *turn) {
     double both[9], shorter = fmin(a->length, b->length);
-    double length = fmin(24.0 * turn->tolerance / turn->size, ROOM * shorter), leg = fmin(turn->wish, shorter);
+    double most = 24.0 * turn->tolerance / turn->size, length = fmin(most, ROOM * shorter);
+    double leg = fmin(turn->wish, shorter);
     length = fmin(length, 4.0 * trochia_pace_room(frame, a, b, turn->jump));
     for (uint32_t i = 0; i < frame->n; i++)
         both[i] = a->t1[i] + b->t0[i];
@@ -28,7 +32,22 @@ void trochia_overlap_want(const trochia_frame *frame, const trochia_curve *a, co
     if (2.0 * trochia_group_norm(frame, both) * leg * leg >= turn->size * length * length)
         return;
     turn->kind = TROCHIA_TURN_OVERLAP;
+    turn->own = turn->wish;
+    turn->lent = length / most;
     turn->wish = length / 3.0;
+}
+
+static void give_way(trochia_turn *turn, const trochia_turn *other) {
+    if (turn->kind != TROCHIA_TURN_OVERLAP || turn->lent >= PART || other->kind != TROCHIA_TURN_CORNER ||
+        other->size > SHALLOW)
+        return;
+    turn->kind = TROCHIA_TURN_CORNER;
+    turn->wish = turn->own;
+}
+
+void trochia_overlap_yield(trochia_turn *turn, trochia_turn *next) {
+    give_way(turn, next);
+    give_way(next, turn);
 }
 
 void trochia_emit_overlap(trochia_reader *r, const trochia_curve *a, const trochia_curve *b, const trochia_turn *turn) {

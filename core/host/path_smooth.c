@@ -73,6 +73,8 @@ static void take(trochia_reader *r, trochia_chain *chain) {
     end_here(link);
     if (k)
         trochia_turn_classify(&r->frame, &trochia_link_at(chain, k - 1)->curve, &link->curve, &link->turn);
+    if (k > 1)
+        trochia_overlap_yield(&trochia_link_at(chain, k - 1)->turn, &link->turn);
     if (k > 2)
         settle(&r->frame, chain, k - 2);
     if (k > 3)

@@ -26,7 +26,7 @@ typedef struct {
     double wish;      /* length wanted on either side */
     double before, after;
     double used;      /* part of P that kernels of this and the neighbouring joints have taken here */
-    double own, lent; /* chain: x'' / m here and at the joint leant on */
+    double own, lent; /* chain: x'' / m here and at the joint leant on; overlap: wish of a corner, part of P's range */
 } trochia_turn;
 
 /* x'' that chains put on a line, even between its ends: x = e0 + d0 s + ... on top of the line. */
@@ -54,6 +54,9 @@ void trochia_turn_classify(const trochia_frame *frame, const trochia_curve *a, c
 /* Chooses the overlap for a corner of two lines where that is passed faster; its range is 3 wish. */
 void trochia_overlap_want(const trochia_frame *frame, const trochia_curve *a, const trochia_curve *b,
                           trochia_turn *turn);
+
+/* At both ends of one line: a small overlap becomes a corner again beside a chain. */
+void trochia_overlap_yield(trochia_turn *turn, trochia_turn *next);
 
 /* Appends the cubic of an overlap, cut in two where the feed changes. */
 void trochia_emit_overlap(trochia_reader *r, const trochia_curve *a, const trochia_curve *b, const trochia_turn *turn);

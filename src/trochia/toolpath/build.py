@@ -23,7 +23,7 @@ SPLINE_ERROR = 1e-4  #: mm: how far a spline's cubics by length may lie from the
 
 
 def build(
-    program: Program, machine: Machine, *, blend: bool = True, continuity: int = 1, overlap: bool = False
+    program: Program, machine: Machine, *, blend: bool = True, continuity: int = 1, overlap: bool = True
 ) -> Toolpath:
     """Return the path of a program on a machine.
 
@@ -39,7 +39,8 @@ def build(
         What is continuous where motion does not stop: 1, direction; 2, curvature too (``Profile.continuity`` says what
         a velocity profile needs).
     overlap
-        With continuity 2: lone corners of lines are passed as the overlap of their moves, and x'' jumps along x' there.
+        With continuity 2: lone corners of lines are passed as the overlap of their moves, at whose ends curvature jumps,
+        but along the path alone, so that acceleration need not.
 
     Raises
     ------

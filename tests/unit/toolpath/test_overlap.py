@@ -52,6 +52,13 @@ def test_lines_that_are_short_for_it_keep_their_bend_continuous():
         assert len(cubics(path)) == kinds
 
 
+def test_a_small_overlap_gives_way_to_a_chain_beside_it():
+    angles = np.radians(np.arange(0, 91, 1.0))
+    chords = "\n".join(f"X{20 * math.cos(a):.12f} Y{20 * math.sin(a):.12f}" for a in angles[1:])
+    path = path_of(f"G64 P0.01\nF6000\nG1 X20\n{chords}")
+    assert np.isclose(path.points(cubics(path), 0.0 * cubics(path), 2)[0], 0.0).all()
+
+
 def test_each_side_of_an_overlap_keeps_its_feed():
     path = path_of("G64 P0.01\nG1 X10 F6000\nY10 F5998")
     rows = cubics(path)

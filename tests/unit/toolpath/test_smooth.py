@@ -15,7 +15,7 @@ MILL = load("reference-mill")
 
 
 def path_of(text, **options):
-    return build(gcode.read(text + "\nM2\n"), MILL, continuity=2, **options)
+    return build(gcode.read(text + "\nM2\n"), MILL, continuity=2, overlap=False, **options)
 
 
 def third(path, rows):
