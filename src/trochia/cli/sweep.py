@@ -16,7 +16,7 @@ from trochia.files import write_whole
 if TYPE_CHECKING:
     from trochia.analysis.sweep import Curve, OperatingPoints
 
-_TIMINGS = ("exact", "millisecond")  # those of `analysis.sweep.TIMINGS`
+_TIMINGS = ("exact", "millisecond", "shield")  # those of `analysis.sweep.TIMINGS`
 _ROWS = 12  # of the curve on a terminal
 
 
@@ -187,7 +187,7 @@ def _show(found: _Found) -> None:
     for low, high in figures["unstable_rpm"]:
         click.echo(f"  hunts from {low:.0f} to {high:.0f} rpm by linear theory; damping or a higher supply helps")
     for name, value in figures["limits_rpm"].items():
-        said = "none found" if value is None else f"{value:.0f} rpm"
+        said = f"{value:.0f} rpm"
         click.echo(f"  {name.replace('_', '/' if name == 'start_stop' else '-')} speed on the twin: {said}")
     for problem in figures["problems"]:
         click.secho(f"  too hot: {problem}", fg="red")

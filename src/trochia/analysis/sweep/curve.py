@@ -93,7 +93,7 @@ class Curve:
             "resonance_Hz": self.resonance,
             "start_stop_rpm": self.start_stop * RPM,
             "unstable_rpm": [[low * RPM, high * RPM] for low, high in self.unstable()],
-            "limits_rpm": {name: None if math.isinf(v) else v * RPM for name, v in self.limits.items()},
+            "limits_rpm": {name: speed * RPM for name, speed in self.limits.items()},
             "curve": rows,
         }
 
@@ -174,7 +174,7 @@ def _start_stop(made: Fed, load: ShaftLoad) -> float:
 
 
 def _limits(made: Fed, load: ShaftLoad, end: float, timing: Timing) -> dict[str, float]:
-    """Return the speeds at which steps are first lost, in steps of 1 rpm from 20 rpm on."""
+    """Return the greatest speeds without lost steps, in steps of 1 rpm from 20 rpm on."""
     speeds = (np.arange(20.0, 2 * end * RPM) / RPM).tolist()
     return {
         "pull_out": pull_out_speed(made, speeds, load, timing),

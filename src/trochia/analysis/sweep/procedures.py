@@ -1,7 +1,7 @@
 """Measuring a stepper on the twin, as one measures a real one.
 
-In: a motor behind its driver, its load, how pulses are timed.  Out: speeds [rad/s] and torques [N·m] where it first
-loses steps.
+In: a motor behind its driver, its load, how pulses are timed.  Out: the greatest speeds [rad/s] and torques [N·m] at
+which it loses no steps.
 
 - pull-out speed: from rest, a turn at each speed, then faster, without a stop (S1-F04, sketch 06)
 - start/stop speed: a turn at each speed from rest, released and at rest in between (S1-F04, sketch 07)
@@ -35,6 +35,7 @@ SETTLE = 0.1  #: at rest before a run [s]
 HOLD = 0.05  #: at a load before it is raised [s]
 COARSE, FINE = 0.05, 0.005  #: rises of the load, parts of the torque expected
 REPEATS = 3
+PATIENCE = 25  #: speeds in a row that cost steps, until a motor has stalled
 _MEAN = Levels(threshold=math.inf)
 
 
@@ -49,39 +50,47 @@ def twin_of(made: Fed, load: ShaftLoad, levels: Levels = _MEAN) -> DrivenStepper
 def pull_out_speed(
     made: Fed, speeds: Iterable[float], load: ShaftLoad = FREE, timing: Timing = EXACT, *, turns: float = 1.0
 ) -> float:
-    """Return the first of some rising speeds [rad/s] at which steps are lost; infinite where none are.
+    """Return the greatest of some rising speeds [rad/s] at which a turn costs no steps; 0 where the first one does.
 
-    Each speed is held for ``turns``, the next follows without a stop.
+    Each speed is held for ``turns``, the next follows without a stop.  A motor that lost steps, at a resonance say, may
+    recover at a higher speed; after :data:`PATIENCE` speeds in a row it has stalled.
     """
     twin = twin_of(made, load)
     twin.run(SETTLE)
+    held, failed, lost = 0.0, 0, 0
     for speed in speeds:
-        if _turn(twin, made, speed, timing, turns):
-            return speed
-    return math.inf
+        before, lost = lost, _turn(twin, made, speed, timing, turns)
+        failed = failed + 1 if abs(lost - before) >= 4 else 0
+        if failed > PATIENCE:
+            break
+        held = held if failed else speed
+    return held
 
 
 def start_stop_speed_measured(
     made: Fed, speeds: Iterable[float], load: ShaftLoad = FREE, timing: Timing = EXACT, *, turns: float = 1.0
 ) -> float:
-    """Return the first of some rising speeds [rad/s] that costs steps when started from rest and stopped at once."""
+    """Return the greatest of some rising speeds [rad/s] before the first that costs steps when started from rest.
+
+    Each is started from rest and stopped at once; 0 where the first one costs steps.
+    """
+    held = 0.0
     for speed in speeds:
         twin = twin_of(made, load)
         twin.run(SETTLE)
-        if _turn(twin, made, speed, timing, turns):
-            return speed
-        if twin.run(3 * SETTLE).lost_steps[-1]:
-            return speed
-    return math.inf
+        if abs(_turn(twin, made, speed, timing, turns)) >= 4 or twin.run(3 * SETTLE).lost_steps[-1]:
+            break
+        held = speed
+    return held
 
 
-def _turn(twin: DrivenStepper, made: Fed, speed: float, timing: Timing, turns: float) -> bool:
-    """Play some turns at a speed, and tell whether the rotor has lost steps at their end."""
+def _turn(twin: DrivenStepper, made: Fed, speed: float, timing: Timing, turns: float) -> int:
+    """Play some turns at a speed, and return the full steps the rotor has lost at their end, before them included."""
     rate = made.motor.full_steps * made.excitation.steps_per_full_step
     times = twin.now + timing.times(math.tau / speed / rate, round(turns * rate))
     twin.queue(times[:-1])
     run = twin.run(times[-1] - twin.now, every=100)
-    return bool(len(run.lost_steps) and abs(run.lost_steps[-1]) >= 4)
+    return int(run.lost_steps[-1]) if len(run.lost_steps) else 0
 
 
 def pull_out_torque_measured(
@@ -133,7 +142,7 @@ def pull_in_torque(made: Fed, speed: float, load: ShaftLoad = FREE, *, halvings:
     def starts(torque: float) -> bool:
         twin = twin_of(made, _with(load, torque))
         twin.run(SETTLE)
-        return not _turn(twin, made, speed, EXACT, max(0.25, speed * 0.2 / math.tau))
+        return abs(_turn(twin, made, speed, EXACT, max(0.25, speed * 0.2 / math.tau))) < 4
 
     if not starts(0.0):
         return 0.0
