@@ -155,11 +155,11 @@ static void advance(trochia_writer *w) {
         trochia_climb(&ahead, w->at, w->v, w->a, &run);
     double time = trochia_search(&ahead, course, w->at, &run, &arrest, &joins, &barrier);
     trochia_leave leave = trochia_leave_at(course, arrest.stretch, arrest.v);
-    joins = joins && leave.s < INFINITY;
-    if (!joins && arrest.stretch == w->at)
-        joins = leave.s < trochia_exit(&ahead, w->at);
     trochia_run at = run;
     trochia_run_out(&ahead, w->at, &run, time);
+    joins = joins && leave.s < INFINITY;
+    if (!joins && arrest.stretch == w->at)
+        joins = leave.s < trochia_exit(&ahead, w->at) || (run.a == 0.0 && trochia_is_barrier(&ahead, w->at));
     if (!joins) {
         for (int k = 0; k < run.count; k++)
             put_leg(w, &run.legs[k]);

@@ -44,12 +44,31 @@ static trochia_arrest arrest_on(const trochia_track *back, const trochia_leg *le
                                trochia_larger(leg->a + t * leg->j, 0.0), NULL, 0, NULL);
 }
 
+/* The time on a leg from which an arrest of one jerk ends at v; negative: it does not end in the leg's stretch. */
+static double leave_straight(const trochia_track *back, const trochia_leg *leg, double v, double *s) {
+    const trochia_stretch *stretch = &back->stretches[leg->stretch];
+    if (stretch->free < INFINITY)
+        return -1.0;
+    double jerk = 1.0 / stretch->along_j, gain = 1.0 + leg->j / jerk, half = leg->a * gain;
+    double off = v - leg->v - 0.5 * leg->a * leg->a / jerk, root = half * half + 2.0 * leg->j * gain * off;
+    if (!(root > 0.0))
+        return -1.0;
+    double t = trochia_smaller(2.0 * off / (half + sqrt(root)), leg->duration);
+    double u = trochia_speed_after(leg->v, leg->a, leg->j, t), a = leg->a + t * leg->j, time = a / jerk;
+    *s = leg->from - trochia_way_after(leg->v, leg->a, leg->j, t) - time * (u + a * time / 3.0);
+    return *s >= stretch->start ? t : -1.0;
+}
+
 /* The time on a leg from which the arrest ends at v; that from its start ends at `from`, below. */
 static double leave_on(const trochia_track *back, const trochia_leg *leg, double from, double to, double v, double *s) {
     double low = 0.0, high = leg->duration, under = from - v, over = to - v;
     int stayed = 0;
-    for (int k = 0; k < 80 && high - low > EXACT * high; k++) {
-        double t = k % 3 < 2 && over > under ? low - under * (high - low) / (over - under) : 0.5 * (low + high);
+    double straight = leave_straight(back, leg, v, s);
+    if (straight >= 0.0)
+        return straight;
+    for (int k = 0; k < 80 && high - low > EXACT * leg->duration; k++) {
+        double t = k % 5 < 4 && over > under && over < INFINITY ? low - under * (high - low) / (over - under)
+                                                                : 0.5 * (low + high);
         if (!(t > low) || !(t < high))
             t = 0.5 * (low + high);
         trochia_arrest found = arrest_on(back, leg, t);

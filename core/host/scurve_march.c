@@ -13,17 +13,6 @@ static const double SHARE = 0.35;    /* of what v^2 is below the ceiling, taken 
 static const double LITTLE_A = 0.75; /* a budget that falls no lower until the ceiling is taken there at once */
 enum { STEPS = 7 };
 
-int trochia_is_barrier(const trochia_track *track, int64_t i) {
-    int64_t next = i + track->by;
-    if (next < 0 || next >= track->count)
-        return 1;
-    return track->stretches[track->by > 0 ? i : next].last || trochia_is_pinned(&track->stretches[next]);
-}
-
-double trochia_exit(const trochia_track *track, int64_t i) {
-    return track->stretches[track->by > 0 ? i + 1 : i].start;
-}
-
 static double place(const trochia_track *track, int64_t i, double rem) {
     return trochia_exit(track, i) - (double)track->by * rem;
 }
@@ -89,7 +78,8 @@ trochia_arrest trochia_arrest_from(const trochia_track *track, int64_t i, double
         /* a falls at least as fast as what the rising speed leaves for it: then it need only be kept at the start */
         int falls = jerk * stretch->along_a >= 2.0 * stretch->bend_a * high * a;
         double most = trochia_acceleration_left(stretch, falls ? v : high);
-        out.margin = trochia_smaller(out.margin, most * SUMMED / a - 1.0);
+        if (most * SUMMED < a)
+            out.margin = most / a - 1.0;
         out.margin = trochia_smaller(out.margin, stretch->ceiling * slack / v - 1.0);
         if (!(jerk > 0.0))
             out.margin = -1.0;
@@ -98,7 +88,7 @@ trochia_arrest trochia_arrest_from(const trochia_track *track, int64_t i, double
         note(track, i, before, rem, v, a, -jerk, time, legs, room, made);
         double first = a;
         v = trochia_speed_after(v, a, -jerk, time);
-        a -= jerk * time;
+        a = time < a / jerk ? a - jerk * time : 0.0;
         a = a > ENDED * first ? a : 0.0;
         out.margin = trochia_smaller(out.margin, stretch->ceiling * slack / v - 1.0);
         out.v = v;

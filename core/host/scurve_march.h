@@ -61,10 +61,24 @@ static inline int trochia_is_pinned(const trochia_stretch *stretch) {
 
 /* The last of the stretches that are passed at one even speed from stretch p on: p or the next. */
 static inline int64_t trochia_pinned_end(const trochia_stretch *stretches, int64_t p) {
-    return stretches[p].kick_out == 0.0 && stretches[p + 1].kick_in == 0.0 && stretches[p + 1].kick_out > 0.0 &&
-                   !stretches[p].last
+    return stretches[p].kick_in > 0.0 && stretches[p].kick_out == 0.0 && stretches[p + 1].kick_in == 0.0 &&
+                   stretches[p + 1].kick_out > 0.0 && !stretches[p].last
                ? p + 1
                : p;
+}
+
+/* Whether motion that leaves stretch i in the track's direction must do so at rest, or comes to one passed at an even
+ * speed, or to the path's end. */
+static inline int trochia_is_barrier(const trochia_track *track, int64_t i) {
+    int64_t next = i + track->by;
+    if (next < 0 || next >= track->count)
+        return 1;
+    return track->stretches[track->by > 0 ? i : next].last || trochia_is_pinned(&track->stretches[next]);
+}
+
+/* s where the track leaves stretch i. */
+static inline double trochia_exit(const trochia_track *track, int64_t i) {
+    return track->stretches[track->by > 0 ? i + 1 : i].start;
 }
 
 static inline double trochia_acceleration_left(const trochia_stretch *stretch, double v) {
@@ -74,13 +88,6 @@ static inline double trochia_acceleration_left(const trochia_stretch *stretch, d
 static inline double trochia_jerk_left(const trochia_stretch *stretch, double v, double a) {
     return (1.0 - stretch->twist_j * v * v * v - stretch->bend_j * v * a) / stretch->along_j;
 }
-
-/* Whether motion that leaves stretch i in the track's direction must do so at rest, or comes to one passed at an even
- * speed, or to the path's end. */
-int trochia_is_barrier(const trochia_track *track, int64_t i);
-
-/* s where the track leaves stretch i. */
-double trochia_exit(const trochia_track *track, int64_t i);
 
 /* Time to go `rem` under constant jerk with a >= 0 all the time, when by `most` that is reached. */
 double trochia_time_over(double v, double a, double j, double rem, double most);

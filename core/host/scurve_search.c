@@ -1,8 +1,9 @@
 /* The last moment at which a pass can still bring a to 0 before it would be too fast, or beyond the pass back. */
 #include "host/scurve_march.h"
 
-static const double EXACT = 1e-14;
-enum { PARTS = 4 };
+static const double EXACT = 1e-14; /* of a run's time */
+static const double NEAR = 1e-11;  /* of a margin */
+enum { PARTS = 1 };
 
 trochia_arrest trochia_probe(const trochia_track *track, const trochia_course *course, int64_t i,
                              const trochia_run *run, double time, int *joins) {
@@ -53,8 +54,8 @@ double trochia_search(const trochia_track *track, const trochia_course *course, 
     double over = arrest->margin;
     *arrest = trochia_probe(track, course, i, run, low, &unused);
     double under = trochia_smaller(trochia_larger(arrest->margin, 0.0), 1.0);
-    for (int k = 0; k < 80 && high - low > EXACT * high; k++) {
-        double time = k % 3 < 2 ? low + under * (high - low) / (under - over) : 0.5 * (low + high);
+    for (int k = 0; k < 80 && high - low > EXACT * run->time; k++) {
+        double time = k % 5 < 4 ? low + under * (high - low) / (under - over) : 0.5 * (low + high);
         if (!(time > low) || !(time < high))
             time = 0.5 * (low + high);
         if (!(time > low) || !(time < high))
@@ -67,7 +68,7 @@ double trochia_search(const trochia_track *track, const trochia_course *course, 
             low = time;
             *arrest = found;
             under = trochia_smaller(found.margin, 1.0);
-            if (under <= EXACT)
+            if (under <= NEAR)
                 break;
         } else {
             under *= stayed == -1 ? 0.5 : 1.0;
