@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from trochia.backends.queue import Queue
+from trochia.backends.queue import SAME_TIME, Queue
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -62,7 +62,7 @@ class Executor:
     @property
     def moving(self) -> bool:
         """Whether there is anything to run through."""
-        return self.queue.end > self.executed + 1e-12
+        return len(self.queue.held) > 0 and self.queue.end > self.executed + SAME_TIME
 
     @property
     def commanded(self) -> NDArray[np.float64]:
@@ -105,8 +105,9 @@ class Executor:
 
     def _slew(self) -> None:
         """Change the rate over one tick, as far as the row under way lets it."""
-        row = int(self.queue.at(np.array([self.executed])).row[0])
-        step = float(self.queue.held.slew[row]) * self.period
+        if not self.braking and self.rate >= 1.0 and self.queue.ends_at_rest:
+            return
+        step = self.queue.slew(self.executed) * self.period
         low = self.queue.stop_in_hand(self.executed + self.rate * self.period) <= self.rate
         if self.braking or low:
             self.rate = max(self.rate - step, 0.0)

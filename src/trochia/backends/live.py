@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from trochia.machine.machine import Machine
     from trochia.messages import Cause
 
+#: outputs every backend has: the spindle [signed rpm], and coolant
+BUILT_IN = ("spindle", "flood", "mist")
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Watch:
@@ -48,7 +51,8 @@ class Orders:
     timed
         The same at a stream time: (time [s], name, value), rising.
     watch
-        Inputs to brake at; an empty tuple watches nothing.
+        Inputs to brake at; an empty tuple watches nothing.  Once one was caught, segments are dropped until the next
+        orders with a ``watch``: they were sent before anyone knew.
     place
         What the joints' present positions are called from now on [mm or degree], by joint; only at rest.
     """

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from trochia.backends.executor import Executor
-from trochia.backends.live import Orders, Report, Trouble
+from trochia.backends.live import BUILT_IN, Orders, Report, Trouble
 from trochia.backends.plant import IdealPlant
 from trochia.errors import LocalProtocolError
 from trochia.messages import Cause
@@ -65,7 +65,8 @@ class LiveTwin:
         self.ahead = ahead
         self.plant = IdealPlant(machine, real)
         self.inputs = {channel.name: False for channel in machine.io if channel.kind == "input"}
-        self.outputs = {channel.name: 0.0 for channel in machine.io if not channel.kind.endswith("input")}
+        names = (*BUILT_IN, *(channel.name for channel in machine.io if not channel.kind.endswith("input")))
+        self.outputs = dict.fromkeys(names, 0.0)
         self.faulty: set[str] = set()
         self._switches = dict(switches or {})
         self._names = [joint.name for joint in machine.joints]
@@ -102,7 +103,7 @@ class LiveTwin:
         self._troubles.clear()
         return Report(
             time=self._now, executed=executor.executed, rate=executor.rate if executor.moving else 0.0,
-            queued=max(executor.queue.end - executor.executed, 0.0), commanded=executor.commanded,
+            queued=executor.queue.end - executor.executed if executor.moving else 0.0, commanded=executor.commanded,
             velocity=self._velocity, encoder=self.plant.encoder() + self._offset,
             actual=self.plant.load + self._offset, enabled=self._enabled, beam=self._beam, line=self._line,
             inputs=self._read(), outputs=dict(self.outputs), troubles=troubles, caught=self._caught,
@@ -121,7 +122,8 @@ class LiveTwin:
             self._watch, self._caught = orders.watch, None
         if orders.place:
             self._place(orders.place)
-        if orders.segments is not None:
+        stale = self._caught is not None and orders.watch is None  # sent before the host knew
+        if orders.segments is not None and not stale:
             if not self._enabled:
                 raise LocalProtocolError("segments for drives that are off")
             self._executor.add(orders.segments, orders.at)
@@ -154,6 +156,7 @@ class LiveTwin:
         self._executor.halt()
         self._rest()
         self._timed.clear()
+        self.outputs |= dict.fromkeys(BUILT_IN, 0.0)
 
     def _rest(self) -> None:
         self._velocity = np.zeros(len(self._names))

@@ -6,6 +6,7 @@ brought to 0 inside what is held.  Legend: r rate, u stream time; a row lets r c
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -42,17 +43,19 @@ class Queue:
         self.start = 0.0
         self.rest = position.copy()  # where the joints are with nothing held
         self.held = nothing(len(position))
+        self.ends_at_rest = True  # whether the joints are at rest where it runs out
+        self.end = 0.0  # stream time at which it runs out [s]
+        self._starts = np.zeros(0)  # of each row, stream time
         self._stops = np.zeros(1)
 
-    @property
-    def end(self) -> float:
-        """Stream time at which it runs out [s]."""
-        return self.start + self.held.span
-
-    @property
-    def ends_at_rest(self) -> bool:
-        """Whether the joints are at rest where it runs out."""
-        return len(self.held) == 0 or bool(np.all(np.abs(self.held.end_velocity) <= AT_REST))
+    def _hold(self, held: Segments) -> None:
+        """Hold these rows from ``start`` on."""
+        self.held = held
+        ends = self.start + np.cumsum(held.duration)
+        self.end = float(ends[-1]) if len(held) else self.start
+        self._starts = np.concatenate([[self.start], ends[:-1]]) if len(held) else ends
+        self._stops = np.concatenate([np.cumsum((held.slew * held.duration)[::-1])[::-1], [0.0]])
+        self.ends_at_rest = not len(held) or bool(np.all(np.abs(held.end_velocity) <= AT_REST))
 
     def add(self, segments: Segments, at: float, executed: float) -> None:
         """Hold segments from stream time ``at`` on, instead of what was held from there.
@@ -74,41 +77,43 @@ class Queue:
             raise LocalProtocolError(f"joint {joint} would jump by {gap[joint]:.6f} at stream time {at:.6f} s")
         if kept is None:
             self.start = at
-        self.held = segments if kept is None else joined([kept, segments])
-        self._stops = np.concatenate([np.cumsum((self.held.slew * self.held.duration)[::-1])[::-1], [0.0]])
+        self._hold(segments if kept is None else joined([kept, segments]))
 
     def clear(self, position: NDArray[np.float64], executed: float) -> None:
         """Hold nothing, with the joints at ``position``."""
         self.rest = position.copy()
-        self.held = nothing(len(position))
         self.start = executed
-        self._stops = np.zeros(1)
+        self._hold(nothing(len(position)))
 
     def forget(self, executed: float) -> None:
         """Drop rows that have been run through."""
-        ends = self.start + np.cumsum(self.held.duration)
-        done = int(np.searchsorted(ends, executed - SAME_TIME, side="right"))
-        if not done:
+        if executed >= self.end - SAME_TIME:
+            done = len(self.held)
+        else:
+            done = int(self._starts.searchsorted(executed - SAME_TIME, side="right")) - 1
+        if done <= 0:
             return
         self.rest = self.held.rows(slice(0, done)).end
-        self.start = float(ends[done - 1])
-        self.held = self.held.rows(slice(done, None))
-        self._stops = self._stops[done:]
+        self.start = self.end if done == len(self.held) else float(self._starts[done])
+        self._hold(self.held.rows(slice(done, None)))
 
     def at(self, times: NDArray[np.float64]) -> Sample:
         """Return the state at stream times, none before the first row."""
         if not len(self.held):
             rows = np.zeros(len(times), np.intp)
             return Sample(rows, np.tile(self.rest, (len(times), 1)), np.zeros((len(times), len(self.rest))))
-        row, position, velocity = self.held.at(times - self.start)
+        row, position, velocity = self.held.at_rows(self._starts, times)
         velocity[times >= self.end - SAME_TIME] = 0.0
         return Sample(row, position, velocity)
 
     def stop_in_hand(self, u: float) -> float:
         """Return the greatest rate that can be brought to 0 between stream time ``u`` and the end."""
         if self.ends_at_rest:
-            return np.inf
-        row = int(np.clip(np.searchsorted(self.start + np.cumsum(self.held.duration), u, side="right"), 0,
-                          len(self.held) - 1))  # fmt: skip
-        left = self.start + float(self.held.duration[: row + 1].sum()) - u
-        return float(np.sqrt(2.0 * (self._stops[row + 1] + self.held.slew[row] * max(left, 0.0))))
+            return math.inf
+        row = max(int(self._starts.searchsorted(u, side="right")) - 1, 0)
+        left = float(self._starts[row] + self.held.duration[row]) - u
+        return math.sqrt(2.0 * (float(self._stops[row + 1]) + float(self.held.slew[row]) * max(left, 0.0)))
+
+    def slew(self, u: float) -> float:
+        """Return the slew of the row under way at stream time ``u`` [1/s]."""
+        return float(self.held.slew[max(int(self._starts.searchsorted(u, side="right")) - 1, 0)])

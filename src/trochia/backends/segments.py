@@ -108,9 +108,14 @@ class Segments:
 
     def at(self, times: NDArray[np.float64]) -> tuple[NDArray[np.intp], NDArray[np.float64], NDArray[np.float64]]:
         """Return row (times,), position and velocity of the joints (times, joints) at times after its start [s]."""
-        starts = np.concatenate([[0.0], np.cumsum(self.duration)[:-1]])
-        row = np.clip(np.searchsorted(starts, times, side="right") - 1, 0, len(self) - 1)
-        tau = np.clip(times - starts[row], 0.0, self.duration[row])[:, None]
+        return self.at_rows(np.concatenate([[0.0], np.cumsum(self.duration)[:-1]]), times)
+
+    def at_rows(
+        self, starts: NDArray[np.float64], times: NDArray[np.float64]
+    ) -> tuple[NDArray[np.intp], NDArray[np.float64], NDArray[np.float64]]:
+        """Return what :meth:`at` does, with the time at which each row begins (rows,) given."""
+        row = np.maximum(starts.searchsorted(times, side="right") - 1, 0)
+        tau = np.minimum(np.maximum(times - starts[row], 0.0), self.duration[row])[:, None]
         c = self.joints[row]
         position = c[..., 0] + tau * (c[..., 1] + tau * (c[..., 2] + tau * c[..., 3]))
         velocity = c[..., 1] + tau * (2.0 * c[..., 2] + tau * 3.0 * c[..., 3])

@@ -47,7 +47,7 @@ TROUBLES: dict[Cause, Row] = {
         "Jog away from the switch; home the axis again if its position may have been lost.", at_once=True,
     ),
     Cause.LINK: Row(
-        "no answer from the backend for {value:.3g} s",
+        "the link to the backend failed: {text}",
         "Look at the cable and the supply, then connect again; the machine stopped from what it held.", trusted=False,
     ),
     Cause.UNDERRUN: Row(

@@ -95,7 +95,6 @@ _HANDS = {
 _POWER = {
     (State.OFF, "enable"): State.IDLE,
     (State.IDLE, "disable"): State.OFF,
-    (State.ALARM, "disable"): State.ALARM,
     (State.ALARM, Event.CLEARED): State.IDLE,
     (State.ALARM, Event.DARK): State.OFF,
     (State.ESTOP, "reset"): State.OFF,

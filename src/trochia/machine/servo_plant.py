@@ -165,7 +165,8 @@ class ServoPlant:
         else:
             whole = poly.polymul([1.0, amplifier.lag], body)
         gain = amplifier.gain * self.torque_constant
-        return Gains(np.trim_zeros(gain * over, "b")[::-1], np.trim_zeros(whole, "b")[::-1])
+        numerator, denominator = (np.trim_zeros(p, "b")[::-1] for p in (gain * over, whole))
+        return Gains(np.asarray(numerator, np.float64), np.asarray(denominator, np.float64))
 
     def _inner(self) -> NDArray[np.float64]:
         """Return the motor's share of the body: position of the motor by torque is this over the body."""

@@ -1,0 +1,255 @@
+"""The live machine: commands and reports in, orders and status out.  No clock, no thread, no file is touched here.
+
+``command`` answers at once; ``step`` takes the backend's report of now and returns what to tell it.  What should
+outlast the moment is put into ``journal``, for whoever runs the controller to write.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from trochia.backends.live import Orders
+from trochia.controller.alarms import TROUBLES, Alarms
+from trochia.controller.handlers import HANDLERS
+from trochia.controller.job import Job
+from trochia.controller.jog import Jog
+from trochia.controller.readying import Readier
+from trochia.controller.states import MOVING, TABLE, Event, State, legal
+from trochia.controller.status import axes_of, axis_statuses, io_of, position_of
+from trochia.errors import TrochiaError
+from trochia.messages import Ack, OverrideStatus, ProgramStatus, Request, Status, SwitchStatus
+from trochia.program import Pause, ToolChange, WorkState
+
+if TYPE_CHECKING:
+    from trochia.backends.live import Report, Trouble
+    from trochia.controller.activity import Activity
+    from trochia.controller.readying import Ready
+    from trochia.machine.machine import Machine
+    from trochia.messages import AnyCommand
+
+POINT = 0.02  #: time between the points a journal gets [s]
+
+
+class Controller:
+    """One machine.
+
+    Parameters
+    ----------
+    report
+        The backend's first.
+    latency, ahead
+        Of the backend [s].
+
+    Attributes
+    ----------
+    state
+        What it is doing.
+    work
+        Offsets, tools, variables as they stand.
+    journal
+        (kind, data) of what has happened, until taken.
+    """
+
+    def __init__(
+        self, machine: Machine, report: Report, *, latency: float, ahead: float, work: WorkState | None = None
+    ) -> None:
+        self.machine, self.report = machine, report
+        self.latency, self.ahead = latency, ahead
+        self.state = State.OFF
+        self.work = work or WorkState()
+        self.switches, self.overrides = SwitchStatus(), OverrideStatus()
+        self.alarms = Alarms()
+        self.readier = Readier(machine)
+        self.loaded: tuple[str, str] | None = None  # name and text of the program
+        self.running: Ready | None = None
+        self.activity: Activity | None = None
+        self.request: Request | None = None
+        self.armed = machine.beam is None
+        self.trusted = {axis.name: axis.home is None for axis in machine.axes}
+        self.journal: list[tuple[str, dict[str, Any]]] = []
+        self.pending: list[Orders] = []
+        self.back = 0.0  # plan time at which a resumed job is where it was held
+        self._sequence = self._requests = 0
+        self._pointed = -POINT
+        self._moved = False
+
+    # -- in and out
+
+    def command(self, command: AnyCommand, now: float) -> Ack:
+        """Take a command, or say why not; what it starts is in the orders of the next step."""
+        kind = str(type(command).__struct_config__.tag)
+        if (self.state, kind) not in TABLE:
+            allowed = legal(self.state)
+            return Ack(id=command.id, ok=False, reason=f"{kind} is not taken while {self.state.value}", legal=allowed)
+        try:
+            told = HANDLERS[type(command)](self, command, now)
+        except TrochiaError as error:
+            self.note("refused", command=kind, reason=str(error))
+            return Ack(id=command.id, ok=False, reason=str(error), legal=legal(self.state))
+        self.note("command", command=kind)
+        self.enter(TABLE[self.state, kind])
+        return Ack(id=command.id, ok=True, told=told)
+
+    def step(self, now: float, report: Report) -> list[Orders]:
+        """Take the backend's report of now and return what to tell it, in order."""
+        self.report = report
+        for trouble in report.troubles:
+            self.fault(trouble)
+        if isinstance(self.activity, Jog) and self.activity.expired(now):
+            self.activity.hold(report, self.latency)
+            if self.state is State.JOGGING:
+                self.note("lease", text="the jog's lease ran out")
+                self.enter(State.STOPPING)
+        self._events()
+        orders, self.pending = self.pending, []
+        if self.activity is not None:
+            orders += self.activity.feed(report)
+        self._point(now)
+        return orders
+
+    def status(self, now: float) -> Status:
+        """Return everything there is to know now."""
+        self._sequence += 1
+        report = self.report
+        return Status(
+            sequence=self._sequence, time=now, state=self.state.value, machine=self.machine.name,
+            axes=axis_statuses(self.machine, report, self.work, self.trusted), legal=legal(self.state),
+            overrides=self.overrides, switches=self.switches, program=self._program(), request=self.request,
+            alarms=tuple(self.alarms.latched), speed=float(np.linalg.norm(self.velocity)), rate=report.rate,
+            beam=report.beam, armed=self.armed, spindle=report.outputs.get("spindle", 0.0),
+            flood=bool(report.outputs.get("flood")), mist=bool(report.outputs.get("mist")), tool=self.work.tool,
+            system=self.work.active, io=io_of(report), queued_s=report.queued,
+        )  # fmt: skip
+
+    # -- what handlers use
+
+    def note(self, kind: str, **data: object) -> None:
+        """Put something into the journal."""
+        self.journal.append((kind, data))
+
+    @property
+    def velocity(self) -> np.ndarray[Any, np.dtype[np.float64]]:
+        """Commanded velocity of the linear axes (n,) [mm/s]."""
+        linear = [i for i, axis in enumerate(self.machine.axes) if not axis.rotary]
+        return axes_of(self.machine, self.report.velocity)[linear]
+
+    def position(self) -> dict[str, float]:
+        """Return where each axis is told to be [mm or degree]."""
+        return position_of(self.machine, self.report)
+
+    def ask(self, kind: str, text: str) -> None:
+        """Ask the operator something."""
+        self._requests += 1
+        self.request = Request(number=self._requests, kind=kind, text=text)
+        self.note("request", number=self._requests, request=kind, text=text)
+
+    def fault(self, trouble: Trouble, text: str = "") -> None:
+        """Latch a fault and do what its row says."""
+        row = TROUBLES[trouble.cause]
+        fault = self.alarms.raise_(trouble, self.report.time, line=self.report.line, text=text)
+        if fault is None:
+            return
+        self.note("fault", cause=trouble.cause.value, text=fault.message, line=fault.line)
+        if row.warning:
+            return
+        if row.at_once or row.dark:
+            self.pending.append(Orders(stop=True, lit=False, enable=False if row.dark else None))
+            self.activity = None
+        elif self.activity is not None:
+            self.activity.hold(self.report, self.latency)
+        if not row.trusted:
+            self.distrust(trouble.joint)
+        if (self.state, Event.FAULT) in TABLE:
+            self.enter(TABLE[self.state, Event.FAULT])
+
+    def distrust(self, joint: str = "") -> None:
+        """Note that positions are lost: of the axes a joint moves, or of all."""
+        rows = {j.name: row for j, row in zip(self.machine.joints, self.machine.kinematics.matrix, strict=True)}
+        moved = np.abs(rows[joint]) > 0.0 if joint in rows else np.ones(len(self.machine.axes), bool)
+        for axis, lost in zip(self.machine.axes, moved, strict=True):
+            self.trusted[axis.name] = self.trusted[axis.name] and not lost
+
+    def begin(self, activity: Activity) -> None:
+        """Be busy with something from now on."""
+        self.activity = activity
+        self._moved = False
+
+    # -- inside
+
+    def enter(self, state: State) -> None:
+        """Be in a state."""
+        if state is not self.state:
+            self.note("state", state=state.value, was=self.state.value)
+            self.state = state
+
+    def _events(self) -> None:
+        """Let what has come about change the state."""
+        if self.activity is not None and self.state is not State.HELD:
+            event = self.activity.event(self.report)
+            if event is not None:
+                self._happen(event)
+        job = self.activity if isinstance(self.activity, Job) else None
+        if self.state is State.RESUMING and job and job.feeder.plan_time(self.report.executed) >= self.back:
+            self._happen(Event.BACK)
+        if self.state is State.ALARM and not self.alarms and self.activity is None:
+            self._happen(Event.CLEARED if self.report.enabled else Event.DARK)
+
+    def _happen(self, event: Event) -> None:
+        """Take an event: settle what ends with it, and enter the state the table names."""
+        activity = self.activity
+        if self.state is State.ALARM and event is Event.STILL:
+            self.activity = None  # motion has come to rest; the alarm stays
+            return
+        target = TABLE.get((self.state, event))
+        if target is None:
+            return
+        if activity is not None and event in {Event.STILL, Event.PAUSED} and self.state is not State.HOLDING:
+            self.pending.append(activity.finish())
+        if event is Event.PAUSED and isinstance(activity, Job):
+            self._ask_for(activity)
+        if target is State.IDLE and activity is not None:
+            self._end()
+        self.enter(target)
+
+    def _ask_for(self, job: Job) -> None:
+        match job.waiting:
+            case ToolChange(tool=tool):
+                self.ask("tool", f"put tool {tool} in, then resume")
+            case Pause():
+                self.ask("pause", "the program has stopped; resume goes on")
+            case _:
+                self.ask("pause", "the block is done; resume or step goes on")
+
+    def _end(self) -> None:
+        """Be no longer busy: keep what a program leaves set up."""
+        whole = self.state in {State.RUNNING, State.STEPPING, State.RESUMING}
+        if isinstance(self.activity, Job):
+            if whole and self.running is not None:
+                self.work = self.running.work
+            else:
+                self.pending.append(Orders(outputs={"spindle": 0.0, "flood": 0.0, "mist": 0.0}))
+            self.note("end", whole=whole, line=self.report.line)
+        self.activity = self.running = self.request = None
+
+    def _program(self) -> ProgramStatus | None:
+        if self.running is not None and isinstance(self.activity, Job):
+            line, done = self.activity.place(self.report)
+            whole = self.running.plan.time_s
+            return ProgramStatus(name=self.running.name, lines=self.running.plan.program.lines, line=line,
+                                 time_s=whole, done_s=max(done, 0.0), remaining_s=max(whole - done, 0.0))  # fmt: skip
+        if self.loaded is None:
+            return None
+        return ProgramStatus(name=self.loaded[0], lines=self.loaded[1].count("\n") + 1)
+
+    def _point(self, now: float) -> None:
+        """Note where the machine is, while it moves and once when it has come to rest."""
+        moving = self.state in MOVING
+        if now - self._pointed < POINT or not (moving or self._moved):
+            return
+        self._pointed, self._moved = now, moving
+        data: dict[str, object] = {"line": self.report.line, "position": self.position()}
+        if isinstance(self.activity, Job):
+            data["done_s"] = self.activity.place(self.report)[1]
+        self.note("point", **data)

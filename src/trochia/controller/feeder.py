@@ -1,0 +1,151 @@
+"""From a live plan to what a backend holds: segments ahead of it, and a stop in hand.
+
+In: a LivePlan, what the backend has run through.  Out: the next segments.  Plan time stands still while motion rests in
+a hold, so that stream time is plan time plus one constant for the whole motion.
+
+Segments are sent until a time ahead is covered and the backend could stop by itself inside what it holds: with a row's
+slew s, d(r²/2)/du = -s brings the rate r from 1 to 0 over rows whose ∫ s du is a half.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from trochia.backends.segments import Segments, joined
+from trochia.planner.limits import Limits
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from numpy.typing import NDArray
+
+    from trochia.machine.machine import Machine
+    from trochia.planner.live import LivePlan, Portion
+
+ROW = 0.004  #: longest time of a row [s]
+DONE = 1e-6  #: a motion is at its end that near [s]
+CHUNK = 0.05  #: motion sent at a time [s]
+STOP = 0.6  #: ∫ s du that is kept ahead; a half stops from rate 1
+STEEPEST = 1000.0  #: greatest slew [1/s]: at rest any would do
+_INSIDE = np.array([0.02, 0.5, 0.98])  #: where in a row its slew is looked at
+
+
+class Feeder:
+    """Sends one live plan.
+
+    Parameters
+    ----------
+    origin
+        Stream time of plan time 0 [s].
+    ahead
+        Motion the backend wants to hold [s].
+
+    Attributes
+    ----------
+    sent
+        Plan time up to which segments were given out [s].
+    """
+
+    def __init__(self, live: LivePlan, machine: Machine, *, origin: float, ahead: float) -> None:
+        self.live = live
+        self.origin = origin
+        self.sent = 0.0
+        self.until = math.inf  # plan time beyond which nothing is sent: a pause
+        self.dark_until = 0.0  # plan time up to which the plan may keep the beam dark: holds and ways back
+        self._matrix = machine.kinematics.matrix
+        self._limits = Limits.of(machine)
+        self._ahead = ahead
+        self._stops: list[tuple[float, float]] = []  # (plan time at a row's end, its ∫ s du)
+
+    def plan_time(self, executed: float) -> float:
+        """Return the plan time of a stream time [s]."""
+        return executed - self.origin
+
+    @property
+    def end(self) -> float:
+        """Plan time at which motion ends, rests in a hold, or pauses [s]; infinite while that is not planned yet."""
+        end = self.live.end
+        return min(self.until, math.inf if end is None else end)
+
+    def done(self, executed: float) -> bool:
+        """Whether all that there is to send has been run through."""
+        return self.sent >= self.end - 1e-12 and self.plan_time(executed) >= self.end - DONE
+
+    def more(
+        self, executed: float, until: Callable[[list[Portion]], float | None]
+    ) -> Iterator[tuple[Segments, float, list[Portion]]]:
+        """Yield what is to be sent now: segments, the stream time they begin at, and the portions they were made of.
+
+        ``until`` looks at portions first and may say at which plan time they must end.
+        """
+        now = self.plan_time(executed)
+        self._stops = [stop for stop in self._stops if stop[0] > now]
+        while self.sent < self.end - 1e-12 and not self._enough(now):
+            begin, end = self.sent, min(self.sent + CHUNK, self.end)
+            portions = self._portions(begin, end)
+            stop = until(portions)
+            if stop is not None:
+                portions = self._portions(begin, stop) if stop > begin + 1e-12 else []
+                end = stop
+            parts = [self._rows(part) for part in portions]
+            if not parts:
+                self.sent = end
+                continue
+            segments = joined(parts)
+            self.sent = portions[-1].end
+            ends = begin + np.cumsum(segments.duration)
+            self._stops += zip(ends.tolist(), (segments.slew * segments.duration).tolist(), strict=True)
+            yield segments, self.origin + begin, portions
+
+    def _portions(self, begin: float, end: float) -> list[Portion]:
+        return [part for part in self.live.portions(begin, end) if len(part.phases)]
+
+    def replan(self, at: float) -> None:
+        """Note that the plan has changed from plan time ``at`` on: what was sent beyond is to be sent anew."""
+        self.sent = min(self.sent, at)
+        self._stops = [stop for stop in self._stops if stop[0] <= at]
+
+    def _enough(self, now: float) -> bool:
+        return self.sent - now >= self._ahead and sum(stop for _, stop in self._stops) >= STOP
+
+    def _rows(self, part: Portion) -> Segments:
+        """Return a portion as segments, cut where jerk changes and at least every ROW."""
+        starts, durations = part.phases["t"], part.phases["duration"]
+        counts = np.maximum(np.ceil(durations / ROW - 1e-9), 1).astype(np.intp)
+        phase = np.repeat(np.arange(len(counts)), counts)
+        within = np.arange(len(phase)) - np.repeat(np.cumsum(counts) - counts, counts)
+        h = durations[phase] / counts[phase]
+        begin = starts[phase] + within * h
+        times = np.append(begin, part.end)
+        place = part.derivative(times, 0) @ self._matrix.T
+        speed = part.derivative(times, 1) @ self._matrix.T
+        chord = (place[1:] - place[:-1]) / h[:, None]
+        rise, lag = speed[1:] - speed[:-1], chord - speed[:-1]
+        joints = np.stack(
+            [place[:-1], speed[:-1], (3.0 * lag - rise) / h[:, None], (rise - 2.0 * lag) / h[:, None] ** 2], axis=-1
+        )
+        middle = begin + 0.5 * h
+        power = part.power_at(middle).astype(np.float32)
+        if self.dark_until > part.begin and power.any():
+            power = np.array([self.live.state(t).power for t in middle.tolist()], np.float32)
+        return Segments(
+            duration=h, joints=joints, line=part.line_at(middle).astype(np.uint32), power=power,
+            slew=self._slew(part, begin, h),
+        )  # fmt: skip
+
+    def _slew(self, part: Portion, begin: NDArray[np.float64], h: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return how fast the rate may fall in each row so that every acceleration stays within its limit.
+
+        At rate r a quantity accelerates by a r² - v s: where it is being braked already, less is left for s.
+        """
+        times = (begin[:, None] + h[:, None] * _INSIDE).ravel()
+        limits = self._limits
+        v = part.derivative(times, 1) @ limits.matrix.T
+        a = part.derivative(times, 2) @ limits.matrix.T
+        room = np.where(v * a < 0.0, limits.acceleration - np.abs(a), limits.acceleration)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            slew = np.where(np.abs(v) > 1e-9, np.maximum(room, 0.0) / np.abs(v), STEEPEST)
+        return np.minimum(slew.min(axis=1).reshape(len(h), -1).min(axis=1), STEEPEST)

@@ -1,0 +1,302 @@
+"""What each command does.  In: the controller, a command that its state allows.  Out: what to tell its sender.
+
+A handler that refuses raises; nothing has changed then.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+
+from trochia.backends.live import Orders, Trouble
+from trochia.controller.homing import Home as Homing
+from trochia.controller.job import Job, Options
+from trochia.controller.jog import Jog
+from trochia.controller.states import State
+from trochia.errors import LimitError, LocalProtocolError, OutOfTravelError
+from trochia.messages import Cause
+from trochia.messages import command as c
+from trochia.program import AXES
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from trochia.controller.controller import Controller
+    from trochia.machine.axes import Axis
+
+    Handler = Callable[[Controller, Any, float], str]
+
+
+def enable(it: Controller, _command: c.Enable, _now: float) -> str:
+    """Switch the drives on."""
+    it.pending.append(Orders(enable=True, lit=it.armed))
+    return ""
+
+
+def disable(it: Controller, _command: c.Disable, _now: float) -> str:
+    """Switch the drives off."""
+    it.pending.append(Orders(enable=False, lit=False))
+    return ""
+
+
+def estop(it: Controller, _command: c.EmergencyStop, _now: float) -> str:
+    """Stop everything now."""
+    it.fault(Trouble(cause=Cause.ESTOP))
+    it.pending.append(Orders(stop=True, enable=False, lit=False))
+    it.activity = it.running = it.request = None
+    it.distrust()
+    return ""
+
+
+def reset(it: Controller, _command: c.Reset, _now: float) -> str:
+    """Leave the emergency stop."""
+    it.alarms.acknowledge()
+    return "home the machine before it runs a program"
+
+
+def acknowledge(it: Controller, _command: c.Acknowledge, _now: float) -> str:
+    """Take note of the alarms."""
+    it.alarms.acknowledge()
+    return ""
+
+
+def load(it: Controller, command: c.Load, _now: float) -> str:
+    """Make a program the one to run, once it has been read and planned from here."""
+    made = it.readier.ready(command.text, command.name, work=it.work, at=it.position(),
+                            block_delete=it.switches.block_delete, bounded=_known(it))  # fmt: skip
+    it.loaded = (command.name, command.text)
+    return f"{made.plan.program.lines} lines, {made.plan.time_s:.1f} s"
+
+
+def unload(it: Controller, _command: c.Unload, _now: float) -> str:
+    """Have no program."""
+    it.loaded = None
+    return ""
+
+
+def run(it: Controller, _command: c.Run, _now: float) -> str:
+    """Run the program from its start."""
+    return _start(it, block_by_block=it.switches.single_block)
+
+
+def step(it: Controller, _command: c.Step, _now: float) -> str:
+    """Run one block."""
+    if it.state is State.HELD and isinstance(it.activity, Job):
+        if not it.activity.options.block_by_block:
+            raise LocalProtocolError("the job was not started block by block", hint="Resume it, or begin with step.")
+        return resume(it, c.Resume(), 0.0)
+    return _start(it, block_by_block=True)
+
+
+def run_from(_it: Controller, _command: c.RunFrom, _now: float) -> str:
+    """Run from a line."""
+    raise LocalProtocolError("this controller cannot begin inside a program yet", hint="Run it from its start.")
+
+
+def mdi(it: Controller, command: c.Mdi, _now: float) -> str:
+    """Run a few lines."""
+    text = command.text if command.text.endswith("\n") else command.text + "\n"
+    return _begin(it, text + "M2\n", "<mdi>", block_by_block=False)
+
+
+def hold(it: Controller, _command: c.Hold, _now: float) -> str:
+    """Brake along the path."""
+    if it.activity is not None:
+        it.activity.hold(it.report, it.latency)
+    return ""
+
+
+def abort(it: Controller, _command: c.Abort, _now: float) -> str:
+    """Brake, and give up."""
+    if it.state is State.HELD:
+        it.pending.append(Orders(outputs={"spindle": 0.0, "flood": 0.0, "mist": 0.0}))
+        it.note("end", whole=False, line=it.report.line)
+        it.activity = it.running = it.request = None
+    elif it.activity is not None and it.state is not State.HOLDING:
+        it.activity.hold(it.report, it.latency)
+    return ""
+
+
+def resume(it: Controller, _command: c.Resume, _now: float) -> str:
+    """Go on."""
+    if isinstance(it.activity, Job):
+        it.back = it.activity.resume(it.report)
+    it.request = None
+    return ""
+
+
+def answer(it: Controller, command: c.Answer, now: float) -> str:
+    """Answer the machine's question; yes goes on."""
+    if it.request is None or it.request.number != command.request:
+        raise LocalProtocolError(f"nothing is asked under number {command.request}")
+    if command.yes and it.state is State.HELD:
+        resume(it, c.Resume(), now)
+        it.enter(State.RESUMING)
+    it.request = None
+    return ""
+
+
+def switches(it: Controller, command: c.Switches, _now: float) -> str:
+    """Set the operator's switches."""
+    given = {name: getattr(command, name) for name in it.switches.__struct_fields__}
+    it.switches = msgspec.structs.replace(it.switches, **{n: v for n, v in given.items() if v is not None})
+    return "" if it.state is State.IDLE else "switches act from the next start on"
+
+
+def override(it: Controller, command: c.Override, _now: float) -> str:
+    """Scale feeds, rapids, spindle."""
+    given = {name: getattr(command, name) for name in it.overrides.__struct_fields__}
+    it.overrides = msgspec.structs.replace(it.overrides, **{n: v for n, v in given.items() if v is not None})
+    if isinstance(it.activity, Job) and it.state in {State.RUNNING, State.STEPPING, State.RESUMING}:
+        it.activity.override(it.report, it.latency, feed=max(it.overrides.feed, 0.01),
+                             rapid=max(it.overrides.rapid, 0.01))  # fmt: skip
+    return ""
+
+
+def jog(it: Controller, command: c.Jog, now: float) -> str:
+    """Jog an axis while its lease lives."""
+    if isinstance(it.activity, Jog):
+        if not it.activity.renew(command.axis, command.speed, command.lease, now):
+            raise LocalProtocolError("another jog is under way", hint="End it with jog-stop first.")
+        return ""
+    axis = _axis(it, command.axis)
+    if not command.speed:
+        raise LocalProtocolError("a jog needs a speed that is not 0")
+    end = axis.maximum if command.speed > 0.0 else axis.minimum
+    here = it.position()[axis.name]
+    if not it.trusted[axis.name]:
+        end = here + (axis.maximum - axis.minimum) * (1.0 if command.speed > 0.0 else -1.0)
+    if (end - here) * command.speed <= 0.0:
+        raise OutOfTravelError(f"{axis.name} stands at the end of its travel, {end:g} {axis.unit}",
+                               hint="Jog the other way.")  # fmt: skip
+    _jog(it, {axis.name: end}, abs(command.speed), now, lease=(axis.name, command.speed, command.lease))
+    return ""
+
+
+def jog_stop(it: Controller, _command: c.JogStop, _now: float) -> str:
+    """End a jog."""
+    if it.activity is not None:
+        it.activity.hold(it.report, it.latency)
+    return ""
+
+
+def jog_by(it: Controller, command: c.JogBy, now: float) -> str:
+    """Move axes by a way."""
+    here = it.position()
+    _jog(it, {name: here[_axis(it, name).name] + way for name, way in command.way.items()}, command.speed, now)
+    return ""
+
+
+def jog_to(it: Controller, command: c.JogTo, now: float) -> str:
+    """Move axes to machine positions."""
+    for name in command.position:
+        if not it.trusted[_axis(it, name).name]:
+            raise LocalProtocolError(f"nobody knows where {name} is", hint="Home it first.")
+    _jog(it, command.position, command.speed, now)
+    return ""
+
+
+def home(it: Controller, command: c.Home, _now: float) -> str:
+    """Find the reference of axes."""
+    names = command.axes or tuple(axis.name for axis in it.machine.axes)
+    it.begin(Homing(it, tuple(_axis(it, name) for name in names)))
+    return ""
+
+
+def work_zero(it: Controller, command: c.WorkZero, _now: float) -> str:
+    """Make the present point read as given."""
+    here = it.position()
+    number = command.system or it.work.active
+    systems = [list(offsets) for offsets in it.work.systems]
+    for name, value in command.axes.items():
+        column = AXES.index(_axis(it, name).name)
+        shift = it.work.tool_offset[column] + (it.work.g92[column] if it.work.g92_on else 0.0)
+        systems[number - 1][column] = here[name] - shift - value
+    it.work = replace(it.work, systems=tuple(tuple(offsets) for offsets in systems))
+    return ""
+
+
+def set_output(it: Controller, command: c.SetOutput, _now: float) -> str:
+    """Set an output."""
+    known = [channel.name for channel in it.machine.io if not channel.kind.endswith("input")]
+    if command.name not in known:
+        raise LocalProtocolError(f"there is no output {command.name!r}", hint="There are: " + ", ".join(known))
+    it.pending.append(Orders(outputs={command.name: command.value}))
+    return ""
+
+
+def arm_beam(it: Controller, command: c.ArmBeam, _now: float) -> str:
+    """Allow or forbid the beam."""
+    it.armed = command.on
+    it.pending.append(Orders(lit=command.on))
+    return ""
+
+
+def _known(it: Controller) -> bool:
+    return all(it.trusted.values())
+
+
+def _axis(it: Controller, name: str) -> Axis:
+    for axis in it.machine.axes:
+        if axis.name == name:
+            return axis
+    raise LocalProtocolError(f"this machine has no axis {name}",
+                             hint="It has " + " ".join(axis.name for axis in it.machine.axes))  # fmt: skip
+
+
+def _start(it: Controller, *, block_by_block: bool) -> str:
+    if it.loaded is None:
+        raise LocalProtocolError("no program is loaded", hint="Load one first.")
+    lost = [name for name, known in it.trusted.items() if not known]
+    if lost:
+        raise LocalProtocolError(f"nobody knows where {' '.join(lost)} stands", hint="Home first.")
+    name, text = it.loaded
+    return _begin(it, text, name, block_by_block=block_by_block)
+
+
+def _begin(it: Controller, text: str, name: str, *, block_by_block: bool) -> str:
+    made = it.readier.ready(
+        text, name, work=it.work, at=it.position(), block_delete=it.switches.block_delete, exact=block_by_block,
+        bounded=_known(it),
+    )  # fmt: skip
+    options = Options(
+        optional_stop=it.switches.optional_stop, block_by_block=block_by_block,
+        dark=it.switches.dry_run, feed=max(it.overrides.feed, 0.01), rapid=max(it.overrides.rapid, 0.01),
+    )  # fmt: skip
+    it.running = made
+    it.begin(Job(made.plan, it.machine, options, origin=it.report.executed, ahead=it.ahead))
+    it.pending.append(Orders(lit=it.armed and not it.switches.dry_run, watch=()))
+    it.note("begin", name=name, seconds=made.plan.time_s)
+    return f"{made.plan.time_s:.1f} s"
+
+
+def _jog(
+    it: Controller, target: dict[str, float], speed: float | None, now: float,
+    lease: tuple[str, float, float] | None = None,
+) -> None:  # fmt: skip
+    axes = [_axis(it, name) for name in target]
+    if not axes:
+        raise LocalProtocolError("a jog names at least one axis")
+    for axis in axes:
+        if it.trusted[axis.name] and not axis.minimum - 1e-9 <= target[axis.name] <= axis.maximum + 1e-9:
+            raise OutOfTravelError(f"{axis.name} would go to {target[axis.name]:g} {axis.unit}, its travel is "
+                                   f"{axis.minimum:g} to {axis.maximum:g}")  # fmt: skip
+    feed = speed if speed is not None else min(axis.velocity for axis in axes) / 2
+    if not feed > 0.0:
+        raise LimitError(f"a jog's speed must be above zero, not {feed!r}")
+    words = " ".join(f"{name}{value:.9f}" for name, value in target.items())
+    made = it.readier.ready(f"G21 G90 G94 G53 G1 {words} F{60.0 * feed:.9f}\nM2\n", "<jog>", work=it.work.__class__(),
+                            at=it.position(), bounded=False)  # fmt: skip
+    it.pending.append(Orders(lit=False, watch=()))
+    it.begin(Jog(made.plan, it.machine, origin=it.report.executed, ahead=it.ahead, now=now, lease=lease))
+
+
+HANDLERS: dict[type[c.Command], Handler] = {
+    c.Enable: enable, c.Disable: disable, c.EmergencyStop: estop, c.Reset: reset, c.Acknowledge: acknowledge,
+    c.Load: load, c.Unload: unload, c.Run: run, c.RunFrom: run_from, c.Hold: hold, c.Resume: resume, c.Step: step,
+    c.Abort: abort, c.Switches: switches, c.Override: override, c.Mdi: mdi, c.Jog: jog, c.JogStop: jog_stop,
+    c.JogBy: jog_by, c.JogTo: jog_to, c.Home: home, c.WorkZero: work_zero, c.SetOutput: set_output,
+    c.ArmBeam: arm_beam, c.Answer: answer,
+}  # fmt: skip

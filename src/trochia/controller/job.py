@@ -1,0 +1,229 @@
+"""A program under way: its motion, and what happens along it.
+
+In: a plan, what the backend has run through.  Out: orders, and events: paused, ended.  Actions of the program that set
+something go with the motion, each at its stream time; those that wait for somebody end what is sent until they are
+answered.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from trochia.backends.live import Orders
+from trochia.controller.feeder import ROW, Feeder
+from trochia.controller.states import Event
+from trochia.planner.live import LivePlan
+from trochia.program import (
+    Action,
+    Coolant,
+    End,
+    Message,
+    Output,
+    Pause,
+    Spindle,
+    SynchronisedOutput,
+    ToolChange,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from trochia.analysis.plan import Plan
+    from trochia.backends.live import Report
+    from trochia.machine.machine import Machine
+    from trochia.planner.live import Portion
+
+REST = 1  #: flag of a phase at rest
+BLOCK_END = Pause(at=-1, line=0, optional=False)  #: what a job run block by block waits at
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Options:
+    """How a job is run: the operator's switches and overrides as they stand at its start."""
+
+    optional_stop: bool = False
+    block_by_block: bool = False
+    dark: bool = False  # beam and spindle stay off
+    feed: float = 1.0
+    rapid: float = 1.0
+
+
+class Job:
+    """One program under way.
+
+    Parameters
+    ----------
+    origin
+        Stream time at which it begins [s].
+    ahead
+        Motion the backend wants to hold [s].
+
+    Attributes
+    ----------
+    waiting
+        The action the program waits at, or None.
+    messages
+        What the program says to its operator, until taken.
+    """
+
+    def __init__(self, plan: Plan, machine: Machine, options: Options, *, origin: float, ahead: float) -> None:
+        self.plan = plan
+        self.options = options
+        self.waiting: Action | None = None
+        self.messages: list[Message] = []
+        self._machine = machine
+        live = LivePlan.of(plan.trajectory, machine)
+        if (options.feed, options.rapid) != (1.0, 1.0):
+            live.override(0.0, feed=options.feed, rapid=options.rapid)
+        self.feeder = Feeder(live, machine, origin=origin, ahead=ahead)
+        self._moves = plan.path.segments["move"]
+        self._actions = plan.program.actions
+        self._next = 0  # number of the first action that has not been sent
+        self._sent: list[tuple[float, int]] = []  # (plan time, number) of actions that were
+        self._paused_at: float | None = None
+        self._block: int | None = None  # source line that may be run, block by block
+
+    # -- what the controller asks for
+
+    def feed(self, report: Report) -> Iterator[Orders]:
+        """Yield the next orders; none where enough is held."""
+        for segments, at, portions in self.feeder.more(report.executed, self._until):
+            timed = self._timed(portions)
+            yield Orders(segments=segments, at=at, timed=tuple(timed))
+
+    def event(self, report: Report) -> Event | None:
+        """Return what has come about: the program waits, or is at its end."""
+        if not self.feeder.done(report.executed):
+            return None
+        if self.waiting is None and not self.feeder.live.held:
+            waits = (action for action in self._actions[self._next :] if self._waits(action))
+            self.waiting = next(waits, None)  # one that stands behind the last move
+        return Event.PAUSED if self.waiting is not None else Event.STILL
+
+    def finish(self) -> Orders:
+        """Return what the actions up to the next that waits, or the program's end, set at once."""
+        outputs: dict[str, float] = {}
+        while self._next < len(self._actions) and self._actions[self._next] is not self.waiting:
+            outputs.update(self._sets(self._actions[self._next]))
+            self._next += 1
+        return Orders(outputs=outputs)
+
+    def hold(self, report: Report, latency: float) -> None:
+        """Brake along the path as soon as an order can act."""
+        at = self._soonest(report, latency)
+        self.feeder.live.hold(at)
+        self.feeder.dark_until = np.inf
+        self._replan(at)
+
+    def resume(self, report: Report) -> float:
+        """Go on, after a hold backing up to where a beam is to relight; return the plan time when that is made up."""
+        if self.waiting is not None:
+            if self.waiting is not BLOCK_END:
+                self._next = max(self._next, self._actions.index(self.waiting) + 1)
+            self.waiting = None
+            self.feeder.until = np.inf
+            return 0.0
+        now = max(self.feeder.plan_time(report.executed), self.feeder.end)
+        back = self.feeder.live.resume(now, relight=self._machine.beam is not None and not self.options.dark)
+        self.feeder.sent, self.feeder.dark_until = now, back + ROW
+        return back
+
+    def override(self, report: Report, latency: float, *, feed: float, rapid: float) -> None:
+        """Change the overrides as soon as an order can act."""
+        at = self._soonest(report, latency)
+        self.feeder.live.override(at, feed=feed, rapid=rapid)
+        self._replan(at)
+
+    def place(self, report: Report) -> tuple[int, float]:
+        """Return the line executed and how far along the program's time [s]."""
+        return report.line, self.feeder.plan_time(report.executed)
+
+    # -- inside
+
+    def _soonest(self, report: Report, latency: float) -> float:
+        return min(self.feeder.plan_time(report.executed) + latency, self.feeder.sent)
+
+    def _replan(self, at: float) -> None:
+        self.feeder.replan(at)
+        while self._sent and self._sent[-1][0] >= at:
+            _, self._next = self._sent.pop()
+        if self.waiting is not None and self._paused_at is not None and self._paused_at >= at:
+            self.waiting = None
+            self.feeder.until = np.inf
+
+    def _until(self, portions: list[Portion]) -> float | None:
+        """Return the plan time of the first pause in portions to be sent, or None."""
+        number = next((k for k in range(self._next, len(self._actions)) if self._waits(self._actions[k])), None)
+        waits = len(self.plan.program.moves) + 1 if number is None else self._actions[number].at
+        for t, reached in self._reached(portions):
+            if reached >= waits and number is not None:
+                return self._pause(t, self._actions[number])
+            line = self._line(reached)
+            if self.options.block_by_block and line not in {self._block, None}:
+                if self._block is not None:
+                    return self._pause(t, BLOCK_END)
+                self._block = line
+        return None
+
+    def _pause(self, t: float, action: Action) -> float:
+        self.waiting, self._paused_at, self._block = action, t, None
+        self.feeder.until = t
+        return t
+
+    def _line(self, move: int) -> int | None:
+        """Return the source line of a move; None after the last."""
+        moves = self.plan.program.moves
+        return int(moves["line"][move]) if move < len(moves) else None
+
+    def _waits(self, action: Action) -> bool:
+        if isinstance(action, Pause):
+            return not action.optional or self.options.optional_stop
+        return isinstance(action, ToolChange)
+
+    def _reached(self, portions: list[Portion]) -> Iterator[tuple[float, int]]:
+        """Yield (plan time, move) at the start of each phase: actions that stand at or before the move are due then."""
+        for part in portions:
+            rests = part.phases["flags"] & REST == REST
+            rows = part.phases["segment"].astype(np.int64) + part.first
+            for t, row, s, rest in zip(part.phases["t"], rows, part.phases["s"], rests, strict=True):
+                number = row + 1 if rest and s > 0.0 else row
+                yield float(t), int(self._moves[number]) if number < len(self._moves) else len(self.plan.program.moves)
+
+    def _timed(self, portions: list[Portion]) -> Iterator[tuple[float, str, float]]:
+        """Yield what is set along portions that are being sent: (stream time, output, value)."""
+        for t, reached in self._reached(portions):
+            while self._next < len(self._actions) and self._actions[self._next].at <= reached:
+                action = self._actions[self._next]
+                if self._waits(action) and action is self.waiting:
+                    break
+                yield from ((self.feeder.origin + t, name, value) for name, value in self._sets(action))
+                self._sent.append((t, self._next))
+                self._next += 1
+
+    def _sets(self, action: Action) -> Iterator[tuple[str, float]]:
+        """Yield the outputs an action sets."""
+        match action:
+            case Spindle(direction=direction, speed=speed):
+                yield "spindle", 0.0 if self.options.dark else direction * speed
+            case Coolant(mist=mist, flood=flood):
+                yield from (("mist", float(mist)), ("flood", float(flood)))
+            case End():
+                yield from (("spindle", 0.0), ("mist", 0.0), ("flood", 0.0))
+            case Output(index=index, value=value) | SynchronisedOutput(index=index, value=value):
+                name = output_name(self._machine, index, analogue=isinstance(value, float))
+                if name is not None:
+                    yield name, float(value)
+            case Message():
+                self.messages.append(action)
+            case _:
+                pass
+
+
+def output_name(machine: Machine, index: int, *, analogue: bool) -> str | None:
+    """Return the output that M62 to M68 call by number: the machine file's outputs of that kind, in its order."""
+    kinds = {"analog-output"} if analogue else {"latched", "timed", "train"}
+    names = [channel.name for channel in machine.io if channel.kind in kinds]
+    return names[index] if index < len(names) else None

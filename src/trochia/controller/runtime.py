@@ -1,0 +1,158 @@
+"""Where the controller meets time: the only module here that knows a clock, a thread or a file.
+
+``Runtime.turn(now)`` does everything there is to do at an instant: poll the backend, step the controller, order, write
+the journal.  With a virtual clock it is called in a loop; with a real one a thread calls it every ``PERIOD`` seconds.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from concurrent.futures import Future
+from dataclasses import dataclass
+from queue import Empty, SimpleQueue
+from typing import TYPE_CHECKING
+
+from trochia.backends.live import Orders, Trouble
+from trochia.controller.controller import Controller
+from trochia.controller.journal import Journal
+from trochia.errors import LinkError
+from trochia.messages import Cause
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from trochia.backends.live import SegmentBackend
+    from trochia.messages import Ack, AnyCommand, Status
+    from trochia.program import WorkState
+
+PERIOD = 0.005  #: between turns [s]
+STATUS = 0.02  #: between statuses, where nothing happens [s]
+
+
+@dataclass(slots=True)
+class Load:
+    """How hard the host works: turns, seconds spent in them, and the longest."""
+
+    turns: int = 0
+    seconds: float = 0.0
+    longest: float = 0.0
+    late: float = 0.0  # greatest lateness of a turn
+
+
+class Runtime:
+    """One controller on one backend.
+
+    Parameters
+    ----------
+    journal
+        Folder of the journal; None: nothing is kept.
+    now
+        When it begins, of the clock that is used [s].
+    """
+
+    def __init__(
+        self, backend: SegmentBackend, *, journal: Path | None = None, work: WorkState | None = None, now: float = 0.0
+    ) -> None:
+        self.backend = backend
+        self.controller = Controller(backend.machine, backend.open(now), latency=backend.latency,
+                                     ahead=backend.ahead, work=work)  # fmt: skip
+        self.load = Load()
+        self._journal = None if journal is None else Journal(journal)
+        self._commands: SimpleQueue[tuple[AnyCommand, Future[Ack]]] = SimpleQueue()
+        self._status = self.controller.status(now)
+        self._thread: threading.Thread | None = None
+        self._over = threading.Event()
+        self._write(now, "begin", {"machine": backend.machine.name, "backend": backend.kind})
+
+    # -- for any thread
+
+    @property
+    def status(self) -> Status:
+        """The latest status."""
+        return self._status
+
+    def send(self, command: AnyCommand) -> Future[Ack]:
+        """Have a command taken at the next turn; the future is its answer."""
+        answer: Future[Ack] = Future()
+        self._commands.put((command, answer))
+        return answer
+
+    # -- the one that runs it
+
+    def turn(self, now: float) -> Status:
+        """Do all there is to do at ``now`` [s], and return the status."""
+        controller = self.controller
+        try:
+            report = self.backend.poll(now)
+        except LinkError as error:
+            controller.fault(Trouble(cause=Cause.LINK, value=0.0), str(error))
+            report = controller.report
+        state, taken = controller.state, False
+        orders = controller.step(now, report)
+        while True:
+            try:
+                command, answer = self._commands.get_nowait()
+            except Empty:
+                break
+            answer.set_result(controller.command(command, now))
+            orders += controller.step(now, report)
+            taken = True
+        self._order(orders, now)
+        if taken or controller.state is not state or now - self._status.time >= STATUS - 1e-9:
+            self._status = controller.status(now)
+        entries, controller.journal = controller.journal, []
+        for kind, data in entries:
+            self._write(now, kind, data)
+        if self._journal is not None:
+            self._journal.flush(now)
+        return self._status
+
+    def command(self, command: AnyCommand, now: float) -> Ack:
+        """Take a command in a turn of its own: for virtual time."""
+        answer = self.send(command)
+        self.turn(now)
+        return answer.result()
+
+    def start(self, clock: Callable[[], float] = time.monotonic) -> None:
+        """Run in a thread of its own, by a real clock."""
+        self._thread = threading.Thread(target=self._run, args=(clock,), name="trochia-controller", daemon=True)
+        self._thread.start()
+
+    def close(self) -> None:
+        """Stop the thread, the machine, the journal."""
+        self._over.set()
+        if self._thread is not None:
+            self._thread.join()
+        self.backend.close()
+        self._write(self._status.time, "closed", {})
+        if self._journal is not None:
+            self._journal.close()
+
+    # -- inside
+
+    def _order(self, orders: list[Orders], now: float) -> None:
+        for order in orders:
+            try:
+                self.backend.order(order, now)
+            except LinkError as error:
+                # what cannot be ordered is not made up for: motion stops by what the backend holds
+                self.controller.fault(Trouble(cause=Cause.LINK, value=0.0), str(error))
+                break
+
+    def _write(self, now: float, kind: str, data: dict[str, object]) -> None:
+        if self._journal is not None:
+            self._journal.write(kind, now, **data)
+
+    def _run(self, clock: Callable[[], float]) -> None:
+        due = clock()
+        while not self._over.is_set():
+            began = clock()
+            self.turn(began)
+            spent = clock() - began
+            load = self.load
+            load.turns, load.seconds = load.turns + 1, load.seconds + spent
+            load.longest, load.late = max(load.longest, spent), max(load.late, began - due)
+            due = max(due + PERIOD, began)
+            self._over.wait(max(due - clock(), 0.0))
