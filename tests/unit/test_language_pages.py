@@ -28,3 +28,15 @@ def test_every_code_and_error_kind_has_a_section():
     assert all(f"## {code.name}\n" in text for code in CODES)
     assert all(f"## {kind}\n" in made["errors.md"] for kind in ("parse", "unknown-code", "modal-conflict"))
     assert "\n## None" not in text
+
+
+REJECTED = sorted(path.parent for path in (Path(__file__).parents[1] / "golden").glob("*/expected.error"))
+
+
+@pytest.mark.parametrize("case", REJECTED, ids=lambda case: case.name)
+def test_every_error_says_where_and_what_to_do(case):
+    """The last line of a report is the remedy, set in by two blanks; the first names file and line."""
+    report = (case / "expected.error").read_text("utf-8").rstrip("\n").split("\n")
+    assert report[0].split(": ")[1].startswith("program.ngc:")
+    assert report[-1].startswith("  ")
+    assert not report[-1].startswith("    ")

@@ -126,11 +126,13 @@ def _add_value(block: Block, word: Word, allowed: str) -> None:
         raise block.place.fault(UnknownCodeError, f"there is no word {letter.upper()} here", at,
                                 hint=f"Axis words are {' '.join(allowed.upper())}.")  # fmt: skip
     if letter in _NOT_NEGATIVE and value < 0:
-        raise block.place.fault(ParseError, f"{letter.upper()} must not be negative", at)
+        raise block.place.fault(ParseError, f"{letter.upper()} must not be negative", at,
+                                hint="Take the minus away.")  # fmt: skip
     if letter in _WHOLE:
         count = as_integer(value)
         if count is None or not 0 <= count <= _MOST:
-            raise block.place.fault(ParseError, f"{letter.upper()} must be a whole number, 0 or more", at)
+            raise block.place.fault(ParseError, f"{letter.upper()} must be a whole number, 0 or more", at,
+                                    hint="Use ROUND, FIX or FUP where it is worked out.")  # fmt: skip
     block.values[letter] = value
     block.where[letter] = at
     column = AXIS.get(letter)

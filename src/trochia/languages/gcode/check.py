@@ -123,4 +123,5 @@ def _check_machine_coordinates(block: Block, state: State) -> None:
 def _check_turns(block: Block) -> None:
     turns = as_integer(block.values["p"], _WHOLE_TURNS)
     if turns is None or turns < 1:
-        raise block.fault(ParseError, "P of an arc counts its turns: 1, 2, 3 and so on", "p")
+        raise block.fault(ParseError, "P of an arc counts its turns: 1, 2, 3 and so on", "p",
+                          hint="Leave P out for an arc of less than a turn.")  # fmt: skip

@@ -161,7 +161,7 @@ class Flow:
         del mark
         times = 1 if control.times is None else as_integer(control.guarded(control.times))
         if times is None or times < 0:
-            raise control.fault(ParseError, "L must be a whole number, 0 or more")
+            raise control.fault(ParseError, "L must be a whole number, 0 or more", hint="L counts calls, like L3.")
         if times > 0:
             self._enter(control, name, None, left=times)
 
@@ -215,7 +215,8 @@ class Flow:
         if control.word == "m99":
             self.ended = True
         elif self._sub is None or (control.word == "endsub" and not self._defining):
-            raise control.fault(ModalConflictError, f"{control.word.upper()} stands in no subroutine")
+            raise control.fault(ModalConflictError, f"{control.word.upper()} stands in no subroutine",
+                                hint="It needs a SUB of the same label before it.")  # fmt: skip
         elif control.word == "endsub":
             self.value, self.returned = (values[0], 1.0) if values else (0.0, 0.0)
             self.skipping = None

@@ -106,7 +106,8 @@ def _assignment(text: str, at: int, expressions: Expressions, place: Place) -> t
 
 def _bad_character(letter: str, at: int, place: Place) -> ParseError:
     """Return the error for a character that begins no word."""
-    hint = "A number stands behind its letter." if letter in ".+-0123456789" else _HINTS.get(letter)
+    number = letter in ".+-0123456789"
+    hint = "A number stands behind its letter." if number else _HINTS.get(letter, "Take it out, or into a comment.")
     return place.fault(ParseError, f"{letter.upper()!r} begins no word", at, hint=hint)
 
 

@@ -79,7 +79,8 @@ def _form_of(block: Block, state: State) -> str:
             raise block.fault(ParseError, f"R and {offsets[0].upper()} cannot both say where the centre is", "r",
                               hint="Use R alone, or I J K alone.")  # fmt: skip
         if not block.is_polar and not any(axis in block.axes for axis in state.plane.axes):
-            raise block.fault(ParseError, f"an arc by R needs its end: {plane[0]} or {plane[1]}", "r")
+            raise block.fault(ParseError, f"an arc by R needs its end: {plane[0]} or {plane[1]}", "r",
+                              hint="A whole turn needs its centre: I J K.")  # fmt: skip
         return "radius"
     if not offsets:
         raise block.fault(ParseError, "an arc needs its centre or its radius", block.mover,
@@ -90,7 +91,8 @@ def _form_of(block: Block, state: State) -> str:
                               hint=f"Use {first.upper()} {second.upper()}, or change the plane.")  # fmt: skip
     for letter in (first, second):
         if state.arc_absolute and letter not in block.values:
-            raise block.fault(ParseError, f"an absolute centre (G90.1) needs {letter.upper()} too", block.mover)
+            raise block.fault(ParseError, f"an absolute centre (G90.1) needs {letter.upper()} too", block.mover,
+                              hint=f"Write {letter.upper()}, or measure the centre from the start: G91.1.")  # fmt: skip
     return "centre"
 
 

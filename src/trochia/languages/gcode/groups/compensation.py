@@ -72,7 +72,8 @@ def _of_words(block: Block, state: State, name: str) -> tuple[float, int]:
         return block.values["d"], 0
     orientation = as_integer(block.values["l"])
     if orientation is None or not 0 <= orientation <= MOST_ORIENTATION:
-        raise block.fault(ParseError, "L is the orientation of a lathe tool, 0 to 9", "l")
+        raise block.fault(ParseError, "L is the orientation of a lathe tool, 0 to 9", "l",
+                          hint="Leave L out where the tool is round.")  # fmt: skip
     if state.plane != Plane.ZX:
         raise block.fault(ModalConflictError, "a lathe tool's orientation (L) needs the ZX plane", "l",
                           hint="Select G18, or leave L out.")  # fmt: skip

@@ -49,7 +49,8 @@ def wait(block: Block, state: State, sink: Sink) -> None:
     """M66: read an input, or wait for it; #5399 gets what it was, here 0, because nobody answers."""
     values = block.values
     if "p" in values and "e" in values:
-        raise block.fault(ModalConflictError, "M66 takes a digital (P) or an analogue input (E), not both", "e")
+        raise block.fault(ModalConflictError, "M66 takes a digital (P) or an analogue input (E), not both", "e",
+                          hint="Read the other one on a line of its own.")  # fmt: skip
     analogue = values.get("p", _NOT_GIVEN) < 0
     index = floor(values.get("e" if analogue else "p", _NOT_GIVEN) + 0.5)
     if index < 0:

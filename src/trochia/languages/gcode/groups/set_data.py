@@ -170,7 +170,8 @@ def _touch_fixture(block: Block, state: State, offset: list[float]) -> list[floa
 def _orientation(block: Block) -> int:
     value = as_integer(block.values["q"])
     if value is None or not 0 <= value <= _MOST_ORIENTATION:
-        raise block.fault(ParseError, "Q of G10 is the orientation of a turning tool, 0 to 9", "q")
+        raise block.fault(ParseError, "Q of G10 is the orientation of a turning tool, 0 to 9", "q",
+                          hint="0 says that the tool is round.")  # fmt: skip
     return value
 
 

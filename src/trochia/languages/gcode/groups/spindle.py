@@ -81,15 +81,18 @@ def orient(block: Block, state: State, sink: Sink) -> None:
     check_spindle(block)
     angle, way = block.values.get("r"), as_integer(block.values.get("p", 0.0))
     if angle is not None and not 0 <= angle <= _TURN:
-        raise block.fault(ParseError, "R of M19 is an angle from 0 to 360", "r")
+        raise block.fault(ParseError, "R of M19 is an angle from 0 to 360", "r",
+                          hint="Add or take away whole turns.")  # fmt: skip
     if way is None or not 0 <= way <= _WAYS:
-        raise block.fault(ParseError, "P of M19 is 0 (shorter way), 1 (clockwise) or 2 (counter-clockwise)", "p")
+        raise block.fault(ParseError, "P of M19 is 0 (shorter way), 1 (clockwise) or 2 (counter-clockwise)", "p",
+                          hint="Leave P out for the shorter way.")  # fmt: skip
     if angle is not None or "p" in block.values:
         state.direction = 0
         sink.orient_spindle(angle or 0.0, way)
     if "q" in block.values:
         if block.values["q"] <= 0:
-            raise block.fault(ParseError, "Q of M19 is the longest time to wait, above zero", "q")
+            raise block.fault(ParseError, "Q of M19 is the longest time to wait, above zero", "q",
+                              hint="Leave Q out to go on without waiting.")  # fmt: skip
         sink.wait_orient(block.values["q"])
 
 

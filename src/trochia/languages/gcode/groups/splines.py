@@ -77,7 +77,8 @@ def add_point(block: Block, state: State, sink: Sink) -> None:
         state.spline_points = [(state.position[0], state.position[1], weight)]
     if block.axes:
         if not all(column in block.axes for column in _IN_PLANE):
-            raise block.fault(ParseError, "a control point needs X and Y", block.mover)
+            raise block.fault(ParseError, "a control point needs X and Y", block.mover,
+                              hint="Write both, even where one of them stays.")  # fmt: skip
         point = target_of(block, state)
         state.spline_points.append((point[0], point[1], weight))
     state.motion = _NURBS
