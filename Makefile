@@ -83,10 +83,11 @@ golden: setup-test
 	$(BIN)/python tests/golden/rewrite.py
 
 # every law and every comparison, on a hundred times as many cases, with a seed that is printed; then SOAK mutated
-# G-code programs from SOAK_SEED on
+# G-code programs from SOAK_SEED on, and some of them against rs274
 soak: setup-test
 	$(BIN)/python -m pytest -q --hypothesis-profile=soak tests/properties tests/oracle
 	$(BIN)/python tests/soak/fuzz_gcode.py --count $(SOAK) --seed $(SOAK_SEED) --jobs $(JOBS)
+	$(BIN)/python tests/soak/compare_gcode.py --count 10000 --seed $(SOAK_SEED) --jobs $(JOBS)
 
 oracle: setup-test
 	$(BIN)/python -m pytest -q tests/oracle

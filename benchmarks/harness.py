@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import platform
+import resource
 import subprocess
 import time
 from dataclasses import dataclass
@@ -51,6 +52,12 @@ def command(argv: Sequence[str | Path], cwd: Path | None = None) -> Callable[[],
     """Return a call that runs a whole command, its output thrown away; a command that fails is an error."""
     null = subprocess.DEVNULL
     return lambda: subprocess.run([str(a) for a in argv], cwd=cwd, stdout=null, stderr=null, check=True)
+
+
+def processor_seconds(*, children: bool = False) -> float:
+    """Return the processor time [s] used so far by this process, or by those it waited for."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN if children else resource.RUSAGE_SELF)
+    return used.ru_utime + used.ru_stime
 
 
 def machine() -> str:
