@@ -36,7 +36,7 @@ def slews(
     out["u"], out["duration"] = phases["t"], phases["duration"]
     first, second, third = (_quantities(segments, pool, limits, phases, order) for order in (1, 2, 3))
     size = np.abs(first)
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         most = _least(_RESERVE * limits.acceleration / size, size)
         for name, sign in (("slow", -1.0), ("quick", 1.0)):
             # |q'' + sign q' r'| <= A at r = 1, |q' r'| <= A at r = 0; between them q'' r² + q' r' lies between both
