@@ -39,7 +39,7 @@ def build(
         What is continuous where motion does not stop: 1, direction; 2, curvature too (``Profile.continuity`` says what
         a velocity profile needs).
     overlap
-        With continuity 2: lone corners of lines are passed as the overlap of their moves, at whose ends curvature jumps,
+        With continuity 2: lone corners of lines are passed as overlaps of their moves, at whose ends curvature jumps,
         but along the path alone, so that acceleration need not.
 
     Raises
