@@ -28,6 +28,7 @@ SAMPLES = sorted((HERE.parents[1] / "programs").glob("*.ngc"))
 
 # Programs the reference takes although they are at fault, or the other way round, each with its reason.
 DIFFERENCES = {
+    "error-log-elsewhere": "the reference opens a log anywhere",
     "error-turning-narrow": "the reference dies of a D that a groove has no room for",
     "error-turning-no-depth": "said on the line of the cycle; the reference draws the profile first",
     "error-turning-not-whole": "the reference names a line that does not exist: O1.500000 CALL",

@@ -52,16 +52,20 @@ def act(text: str, place: Place, state: State, sink: Sink) -> None:
     elif name == "py":
         raise place.fault(UnknownCodeError, "Python in comments is not run here", hint="Take the comment away.")
     else:
-        _log(name, rest, state, sink)
+        _log(name, rest, place, state, sink)
 
 
-def _log(name: str, rest: str, state: State, sink: Sink) -> None:
-    """Open, fill or close the log."""
+def _log(name: str, rest: str, place: Place, state: State, sink: Sink) -> None:
+    """Open, fill or close the log, which lies in the program's folder."""
     if name == "log":
         sink.log(shown(rest, state.parameters))
     elif name == "logclose":
         sink.close_log()
     else:
+        parts = rest.strip().replace("\\", "/").split("/")
+        if parts[0] == "" or ":" in parts[0] or ".." in parts:
+            raise place.fault(ProgramError, f"the log file {rest.strip()!r} leads out of the program's folder",
+                              hint="Name it without a folder, like log.txt.")  # fmt: skip
         sink.open_log(rest, append=name == "logappend")
 
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from trochia.errors import ProgramError, Source
 from trochia.program import (
     Coolant,
     Dwell,
@@ -37,7 +36,6 @@ class ToldActions:
     """
 
     line: int
-    _name: str
     _actions: list[Action]
     _direction: int
     _speed: float | None
@@ -169,15 +167,7 @@ class ToldActions:
         self.message(text)
 
     def open_log(self, name: str, *, append: bool) -> None:
-        """Check that the log would lie in the program's folder; a program that is only read writes no file."""
-        del append
-        parts = name.strip().replace("\\", "/").split("/")
-        if parts[0] == "" or ":" in parts[0] or ".." in parts:
-            raise ProgramError(
-                f"the log file {name.strip()!r} leads out of the program's folder",
-                source=Source(self._name, self.line),
-                hint="Name it without a folder, like log.txt.",
-            )
+        """Nothing: a program that is only read writes no file."""
 
     def log(self, text: str) -> None:
         """Tell the operator."""
