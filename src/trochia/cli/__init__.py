@@ -18,6 +18,7 @@ COMMANDS = {
     "canon": "Print a program's canonical commands, one per line.",
     "plan": "Time, length, extents and per-line timing of a program.",
     "simulate": "Run a program on the digital twin: recording and report.",
+    "run": "Run a program on a machine, under the live controller.",
     "interpolate": "Compare the classic interpolators on a line or an arc.",
     "profile": "A stepper's velocity profile, step by step, and whether it will do.",
     "sweep": "A stepper's torque-speed curve behind its driver, with a program's operating points.",

@@ -10,6 +10,7 @@ import pytest
 
 import trochia
 from trochia.backends.live_twin import LiveTwin
+from trochia.backends.switches import switches_of
 from trochia.controller.runtime import Runtime
 from trochia.machine.homing import Homing, LimitSwitch
 from trochia.machine.io import Beam, Channel
@@ -30,7 +31,7 @@ class Bench:
     def __init__(self, machine: Machine, *, real: dict[str, float] | None = None, journal: Path | None = None) -> None:
         self.machine = machine
         position = np.array([(real or {}).get(joint.name, 0.0) for joint in machine.joints])
-        self.twin = LiveTwin(machine, position=position, switches=switches(machine))
+        self.twin = LiveTwin(machine, position=position, switches=switches_of(machine))
         self.now = 0.0
         self.runtime = Runtime(self.twin, journal=journal)
         self.trace: list[tuple[float, np.ndarray, float, Status]] = []
@@ -68,20 +69,6 @@ class Bench:
 
     def at(self, axis: str) -> float:
         return next(a.commanded for a in self.status.axes if a.name == axis)
-
-
-def switches(machine: Machine) -> dict:
-    """Return the switches of a machine's axes, where their limits and home switches really are."""
-    found = {}
-    for i, axis in enumerate(machine.axes):
-        if axis.limit_minus is not None:
-            found[axis.limit_minus.input] = lambda load, i=i, at=axis.limit_minus.at: bool(load[i] <= at)
-        if axis.limit_plus is not None:
-            found[axis.limit_plus.input] = lambda load, i=i, at=axis.limit_plus.at: bool(load[i] >= at)
-        if axis.home is not None and axis.home.input is not None:
-            sign, at = (1.0 if axis.home.towards == "+" else -1.0), axis.home.position
-            found[axis.home.input] = lambda load, i=i, sign=sign, at=at: bool(sign * (load[i] - at) >= 0.0)
-    return found
 
 
 @pytest.fixture
