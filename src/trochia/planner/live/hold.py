@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trochia.kernels import path as kernel
-from trochia.kernels.layout import PHASE
 from trochia.planner.live.laid import keeps, lay
 from trochia.planner.live.portion import states_at
 from trochia.planner.live.road import Place
@@ -104,6 +103,3 @@ def _rest_after(phases: NDArray[Any], t: float) -> int:
     still = np.append(phases["v"][1:] == 0.0, np.True_) | (phases["flags"] & 1 == 1)
     found = np.flatnonzero(still & (ends >= t))
     return int(found[0]) + 1 if len(found) else len(phases)
-
-
-__all__ = ["PHASE", "STRENGTHS", "before", "hold", "stop_from", "strengths"]

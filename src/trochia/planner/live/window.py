@@ -103,6 +103,3 @@ def scale_feeds(rows: NDArray[Any], pool: NDArray[np.float64], limits: Limits, s
         along = np.abs(kernel.sample(rows, pool, limits.matrix.shape[1], states, 1) @ limits.matrix.T)
         most = 1.0 / (along / limits.velocity).max(axis=1)
         rows["speed_limit"][rapid] = speeds.rapid * np.minimum(most, limits.path_velocity)
-
-
-__all__ = ["PHASE", "Rules", "Speeds", "plan_window", "scale_feeds"]
