@@ -47,7 +47,7 @@ MOST_SECONDS = 10.0  #: a case may take, on a machine that does other things too
 MOST_MEMORY = 2 << 30  #: bytes of address space beyond those of the start
 CHUNK = 1000  #: cases of a worker process
 MOST_TRIES = 400  #: programs tried to cut a failure down
-#: where reader and printer may differ: the printer does not place moves or logs; the fast path does not count plain lines
+#: where reader and printer may differ: the printer places no moves or logs; the fast path does not count plain lines
 MAY_DIFFER = (
     "in a turned coordinate system an arc must lie in the XY plane",
     "this move would end at a point that is not finite",
