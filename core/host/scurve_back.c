@@ -8,6 +8,7 @@
 
 static const double SUMMED = 1.0 + 1e-12;
 static const double EXACT = 1e-14;
+static const double NEAR = 1e-14; /* speeds that are the same */
 static const double STILL = 1e-7; /* nearer to the ceiling than this part, an even speed is kept */
 
 static trochia_track track_of(const trochia_course *course, int64_t by) {
@@ -77,14 +78,14 @@ static double leave_on(const trochia_track *back, const trochia_leg *leg, double
             stayed = 1;
             low = t;
             under = found.v - v;
-            if (under >= -EXACT * v)
+            if (under >= -NEAR * v)
                 break;
         } else {
             under *= stayed == -1 ? 0.5 : 1.0;
             stayed = -1;
             high = t;
             over = found.margin >= 0.0 ? found.v - v : INFINITY;
-            if (over < EXACT * v) {
+            if (over < NEAR * v) {
                 low = t;
                 break;
             }

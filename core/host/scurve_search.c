@@ -1,9 +1,10 @@
 /* The last moment at which a pass can still bring a to 0 before it would be too fast, or beyond the pass back. */
 #include "host/scurve_march.h"
 
-static const double EXACT = 1e-14; /* of a run's time */
-static const double NEAR = 1e-11;  /* of a margin */
-enum { PARTS = 1 };
+/* Exact enough, on lines and where the path bends: part of a run's time, and of a margin. */
+static const double EXACT[2] = {1e-13, 1e-8};
+static const double NEAR[2] = {1e-11, 1e-7};
+enum { PARTS = 4 };
 
 trochia_arrest trochia_probe(const trochia_track *track, const trochia_course *course, int64_t i,
                              const trochia_run *run, double time, int *joins) {
@@ -50,11 +51,11 @@ double trochia_search(const trochia_track *track, const trochia_course *course, 
     if (arrest->margin >= 0.0)
         return high;
     *barrier = arrest->barrier;
-    int unused, stayed = 0;
+    int unused, stayed = 0, bends = track->stretches[i].free < INFINITY;
     double over = arrest->margin;
     *arrest = trochia_probe(track, course, i, run, low, &unused);
     double under = trochia_smaller(trochia_larger(arrest->margin, 0.0), 1.0);
-    for (int k = 0; k < 80 && high - low > EXACT * run->time; k++) {
+    for (int k = 0; k < 80 && high - low > EXACT[bends] * run->time; k++) {
         double time = k % 5 < 4 ? low + under * (high - low) / (under - over) : 0.5 * (low + high);
         if (!(time > low) || !(time < high))
             time = 0.5 * (low + high);
@@ -68,7 +69,7 @@ double trochia_search(const trochia_track *track, const trochia_course *course, 
             low = time;
             *arrest = found;
             under = trochia_smaller(found.margin, 1.0);
-            if (under <= NEAR)
+            if (under <= NEAR[bends])
                 break;
         } else {
             under *= stayed == -1 ? 0.5 : 1.0;
