@@ -15,6 +15,7 @@ C_CODE := $(wildcard core/host/*.[ch] core/shared/*.[ch] firmware/*/*.[ch] tests
 C_FLAGS := -std=c11 -O2 -Wall -Wextra -Wconversion -Wswitch-enum -Werror -ffp-contract=off
 JOBS   ?= 2
 SOAK   ?= 1000000
+PLANS  ?= 100000
 SOAK_SEED ?= 1
 
 .DEFAULT_GOAL := help
@@ -83,10 +84,11 @@ golden: setup-test
 	$(BIN)/python tests/golden/rewrite.py
 
 # every law and every comparison, on a hundred times as many cases, with a seed that is printed; then SOAK mutated
-# G-code programs from SOAK_SEED on, and some of them against rs274
+# G-code programs and PLANS random programs to plan, from SOAK_SEED on, and some of them against rs274
 soak: setup-test
 	$(BIN)/python -m pytest -q --hypothesis-profile=soak tests/properties tests/oracle
 	$(BIN)/python tests/soak/fuzz_gcode.py --count $(SOAK) --seed $(SOAK_SEED) --jobs $(JOBS)
+	$(BIN)/python tests/soak/plans.py --count $(PLANS) --seed $(SOAK_SEED)
 	$(BIN)/python tests/soak/compare_gcode.py --count 10000 --seed $(SOAK_SEED) --jobs $(JOBS)
 
 oracle: setup-test

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import dataclasses
+import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,6 +16,7 @@ from trochia.kernels import path as kernel
 from trochia.planner import plan
 from trochia.toolpath import build
 
+SOAK = Path(__file__).parents[1] / "soak"
 POINTS = 11
 MACHINES = ["mill", "capped", "belts", "rotary"]
 
@@ -113,3 +117,10 @@ def test_a_tolerance_hardly_costs_time(motion, name, data):
     exact = plan(build(program, machine, blend=False), machine, program=program, profile="s-curve")
     # a tight corner is passed at an even speed, while a stop needs no time at that
     assert blended.duration <= exact.duration * 1.06 + 0.03 * len(program.moves)
+
+
+def test_a_sample_of_the_campaign_of_plans():
+    done = subprocess.run([sys.executable, str(SOAK / "plans.py"), "--count", "160"], capture_output=True, text=True,
+                          check=False)  # fmt: skip
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "160 programs" in done.stdout
