@@ -146,6 +146,10 @@ trochia_leave trochia_leave_at(const trochia_course *course, int64_t i, double v
         from = to;
         passed += leg->duration;
     }
+    const trochia_leg *last = &course->legs[stretches[k].leg];
+    if (stretches[k].climbs > 0)
+        last += stretches[k].climbs - 1;
+    leave.s = arrest_on(&back, last, stretches[k].climbs > 0 ? last->duration : 0.0).s;
     return leave;
 }
 
