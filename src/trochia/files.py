@@ -12,10 +12,10 @@ if TYPE_CHECKING:
 
 
 @contextmanager
-def whole_file(path: Path) -> Generator[BinaryIO]:
+def whole_file(path: Path, mode: int = 0o666) -> Generator[BinaryIO]:
     """Give a binary file that takes the name ``path`` only when the block ends without an error.
 
-    A device or a pipe is written as it is.
+    A device or a pipe is written as it is.  ``mode`` is who may read and write a file made anew, less the umask.
 
     Raises
     ------
@@ -29,14 +29,14 @@ def whole_file(path: Path) -> Generator[BinaryIO]:
         return
     part = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
-        with part.open("wb") as out:
+        with os.fdopen(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, mode), "wb") as out:
             yield out
         part.replace(path)
     finally:
         part.unlink(missing_ok=True)
 
 
-def write_whole(path: Path, content: bytes) -> None:
+def write_whole(path: Path, content: bytes, mode: int = 0o666) -> None:
     """Write ``content`` to ``path`` whole or not at all; errors are those of :func:`whole_file`."""
-    with whole_file(path) as out:
+    with whole_file(path, mode) as out:
         out.write(content)

@@ -10,26 +10,28 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trochia.backends.live import Orders
+from trochia.backends.live import Orders, Trouble
 from trochia.controller.alarms import TROUBLES, Alarms
 from trochia.controller.handlers import HANDLERS
 from trochia.controller.job import Job
 from trochia.controller.jog import Jog
 from trochia.controller.readying import Readier
 from trochia.controller.states import MOVING, TABLE, Event, State, legal
-from trochia.controller.status import axes_of, axis_statuses, io_of, position_of
+from trochia.controller.status import axes_of, axis_statuses, io_of, position_of, unit_of
 from trochia.errors import TrochiaError
-from trochia.messages import Ack, OverrideStatus, ProgramStatus, Request, Status, SwitchStatus
+from trochia.messages import Ack, Cause, OverrideStatus, ProgramStatus, Request, Status, SwitchStatus
 from trochia.program import Pause, ToolChange, WorkState
 
 if TYPE_CHECKING:
-    from trochia.backends.live import Report, Trouble
+    from trochia.backends.live import Report
     from trochia.controller.activity import Activity
     from trochia.controller.readying import Ready
     from trochia.machine.machine import Machine
     from trochia.messages import AnyCommand
 
-POINT = 0.02  #: time between the points a journal gets [s]
+POINT = 0.01  #: time between the points a journal gets [s]
+#: outputs of every backend, off
+STILL = {"spindle": 0.0, "flood": 0.0, "mist": 0.0}
 
 
 class Controller:
@@ -63,6 +65,7 @@ class Controller:
         self.alarms = Alarms()
         self.readier = Readier(machine)
         self.loaded: tuple[str, str] | None = None  # name and text of the program
+        self.preview: Ready | None = None  # the program as it was planned when it was loaded
         self.running: Ready | None = None
         self.activity: Activity | None = None
         self.request: Request | None = None
@@ -73,7 +76,7 @@ class Controller:
         self.back = 0.0  # plan time at which a resumed job is where it was held
         self._sequence = self._requests = 0
         self._pointed = -POINT
-        self._moved = False
+        self._moved = self._on = False
 
     # -- in and out
 
@@ -93,20 +96,25 @@ class Controller:
         return Ack(id=command.id, ok=True, told=told)
 
     def step(self, now: float, report: Report) -> list[Orders]:
-        """Take the backend's report of now and return what to tell it, in order."""
+        """Take the backend's report of now and return what to tell it, in order.  A report is taken once."""
         self.report = report
         for trouble in report.troubles:
             self.fault(trouble)
+        self._look_at_power()
         if isinstance(self.activity, Jog) and self.activity.expired(now):
             self.activity.hold(report, self.latency)
             if self.state is State.JOGGING:
                 self.note("lease", text="the jog's lease ran out")
                 self.enter(State.STOPPING)
         self._events()
+        self._point(now)
+        return self.orders()
+
+    def orders(self) -> list[Orders]:
+        """Return what there is to tell the backend by what is known, in order."""
         orders, self.pending = self.pending, []
         if self.activity is not None:
-            orders += self.activity.feed(report)
-        self._point(now)
+            orders += self.activity.feed(self.report)
         return orders
 
     def status(self, now: float) -> Status:
@@ -148,21 +156,35 @@ class Controller:
     def fault(self, trouble: Trouble, text: str = "") -> None:
         """Latch a fault and do what its row says."""
         row = TROUBLES[trouble.cause]
-        fault = self.alarms.raise_(trouble, self.report.time, line=self.report.line, text=text)
+        fault = self.alarms.raise_(trouble, self.report.time, line=self.report.line, text=text,
+                                   unit=unit_of(self.machine, trouble.joint))  # fmt: skip
         if fault is None:
             return
         self.note("fault", cause=trouble.cause.value, text=fault.message, line=fault.line)
         if row.warning:
             return
+        self.pending.append(Orders(stop=row.at_once or row.dark, lit=False, enable=False if row.dark else None,
+                                   outputs=STILL))  # fmt: skip
         if row.at_once or row.dark:
-            self.pending.append(Orders(stop=True, lit=False, enable=False if row.dark else None))
             self.activity = None
         elif self.activity is not None:
-            self.activity.hold(self.report, self.latency)
+            self._brake(self.activity)
+        if self.running is not None:
+            self.note("end", whole=False, line=self.report.line)
+        self.running = self.request = None
         if not row.trusted:
             self.distrust(trouble.joint)
         if (self.state, Event.FAULT) in TABLE:
             self.enter(TABLE[self.state, Event.FAULT])
+
+    def _brake(self, activity: Activity) -> None:
+        """Brake along the path, or at once where that cannot be planned."""
+        try:
+            activity.hold(self.report, self.latency)
+        except TrochiaError as error:
+            self.note("brake", text=str(error))
+            self.pending.append(Orders(stop=True, lit=False))
+            self.activity = None
 
     def distrust(self, joint: str = "") -> None:
         """Note that positions are lost: of the axes a joint moves, or of all."""
@@ -184,6 +206,15 @@ class Controller:
             self.note("state", state=state.value, was=self.state.value)
             self.state = state
 
+    def _look_at_power(self) -> None:
+        """Take drives that go off by themselves for a fault."""
+        if self.state in {State.OFF, State.ESTOP, State.ALARM}:
+            self._on = False
+        elif self._on and not self.report.enabled:
+            self.fault(Trouble(cause=Cause.DRIVE), "they went off by themselves")
+        else:
+            self._on = self.report.enabled
+
     def _events(self) -> None:
         """Let what has come about change the state."""
         if self.activity is not None and self.state is not State.HELD:
@@ -193,6 +224,9 @@ class Controller:
         job = self.activity if isinstance(self.activity, Job) else None
         if self.state is State.RESUMING and job and job.feeder.plan_time(self.report.executed) >= self.back:
             self._happen(Event.BACK)
+        if self.state is State.ALARM and self.activity is not None and self.report.still:
+            self.activity = None  # whatever it planned: nothing moves any more
+            self.pending.append(Orders(stop=True, lit=False, watch=()))
         if self.state is State.ALARM and not self.alarms and self.activity is None:
             self._happen(Event.CLEARED if self.report.enabled else Event.DARK)
 
@@ -206,7 +240,7 @@ class Controller:
         if target is None:
             return
         if activity is not None and event in {Event.STILL, Event.PAUSED} and self.state is not State.HOLDING:
-            self.pending.append(activity.finish())
+            self.pending.append(activity.finish(whole=self.state is not State.STOPPING))
         if event is Event.PAUSED and isinstance(activity, Job):
             self._ask_for(activity)
         if target is State.IDLE and activity is not None:
@@ -229,7 +263,7 @@ class Controller:
             if whole and self.running is not None:
                 self.work = self.running.work
             else:
-                self.pending.append(Orders(outputs={"spindle": 0.0, "flood": 0.0, "mist": 0.0}))
+                self.pending.append(Orders(lit=False, outputs=STILL))
             self.note("end", whole=whole, line=self.report.line)
         self.activity = self.running = self.request = None
 
@@ -246,7 +280,7 @@ class Controller:
     def _point(self, now: float) -> None:
         """Note where the machine is, while it moves and once when it has come to rest."""
         moving = self.state in MOVING
-        if now - self._pointed < POINT or not (moving or self._moved):
+        if now - self._pointed < POINT - 1e-9 or not (moving or self._moved):
             return
         self._pointed, self._moved = now, moving
         data: dict[str, object] = {"line": self.report.line, "position": self.position()}

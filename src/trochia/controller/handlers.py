@@ -66,13 +66,13 @@ def load(it: Controller, command: c.Load, _now: float) -> str:
     """Make a program the one to run, once it has been read and planned from here."""
     made = it.readier.ready(command.text, command.name, work=it.work, at=it.position(),
                             block_delete=it.switches.block_delete, bounded=_known(it))  # fmt: skip
-    it.loaded = (command.name, command.text)
+    it.loaded, it.preview = (command.name, command.text), made
     return f"{made.plan.program.lines} lines, {made.plan.time_s:.1f} s"
 
 
 def unload(it: Controller, _command: c.Unload, _now: float) -> str:
     """Have no program."""
-    it.loaded = None
+    it.loaded = it.preview = None
     return ""
 
 

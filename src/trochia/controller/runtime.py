@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import threading
 import time
+import traceback
 from concurrent.futures import Future
 from dataclasses import dataclass
 from queue import Empty, SimpleQueue
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from trochia.backends.live import SegmentBackend
+    from trochia.backends.live import Report, SegmentBackend
     from trochia.messages import Ack, AnyCommand, Status
     from trochia.program import WorkState
 
@@ -50,6 +51,11 @@ class Runtime:
         Folder of the journal; None: nothing is kept.
     now
         When it begins, of the clock that is used [s].
+
+    Attributes
+    ----------
+    watchers
+        Called at the end of each turn, in its thread, with the status and the backend's report; they must be quick.
     """
 
     def __init__(
@@ -61,6 +67,7 @@ class Runtime:
         self.load = Load()
         self._journal = None if journal is None else Journal(journal)
         self._commands: SimpleQueue[tuple[AnyCommand, Future[Ack]]] = SimpleQueue()
+        self.watchers: list[Callable[[Status, Report], None]] = []
         self._status = self.controller.status(now)
         self._thread: threading.Thread | None = None
         self._over = threading.Event()
@@ -74,7 +81,7 @@ class Runtime:
         return self._status
 
     def send(self, command: AnyCommand) -> Future[Ack]:
-        """Have a command taken at the next turn; the future is its answer."""
+        """Have a command taken at the next turn; the future is its answer, set when status and journal show it."""
         answer: Future[Ack] = Future()
         self._commands.put((command, answer))
         return answer
@@ -91,22 +98,28 @@ class Runtime:
             report = controller.report
         state, taken = controller.state, False
         orders = controller.step(now, report)
+        answers: list[tuple[Future[Ack], Ack]] = []
         while True:
             try:
                 command, answer = self._commands.get_nowait()
             except Empty:
                 break
-            answer.set_result(controller.command(command, now))
-            orders += controller.step(now, report)
+            answers.append((answer, controller.command(command, now)))
+            orders += controller.orders()
             taken = True
         self._order(orders, now)
-        if taken or controller.state is not state or now - self._status.time >= STATUS - 1e-9:
+        if taken or controller.state is not state or now - self._status.time >= STATUS - PERIOD / 2:
             self._status = controller.status(now)
         entries, controller.journal = controller.journal, []
         for kind, data in entries:
             self._write(now, kind, data)
         if self._journal is not None:
             self._journal.flush(now)
+        for watcher in self.watchers:
+            watcher(self._status, report)
+        for answer, ack in answers:
+            if answer.set_running_or_notify_cancel():
+                answer.set_result(ack)
         return self._status
 
     def command(self, command: AnyCommand, now: float) -> Ack:
@@ -133,23 +146,36 @@ class Runtime:
     # -- inside
 
     def _order(self, orders: list[Orders], now: float) -> None:
+        refused = False
         for order in orders:
+            if refused and order.segments is not None:
+                continue  # what cannot be ordered is not made up for: motion stops by what the backend holds
             try:
                 self.backend.order(order, now)
             except LinkError as error:
-                # what cannot be ordered is not made up for: motion stops by what the backend holds
-                self.controller.fault(Trouble(cause=Cause.LINK, value=0.0), str(error))
-                break
+                refused = True
+                self.controller.fault(Trouble(cause=Cause.LINK), str(error))
 
     def _write(self, now: float, kind: str, data: dict[str, object]) -> None:
         if self._journal is not None:
             self._journal.write(kind, now, **data)
 
+    def _safe_turn(self, now: float) -> None:
+        """Take a turn; whatever goes wrong in it, the machine is stopped and says so."""
+        try:
+            self.turn(now)
+        except Exception as error:  # noqa: BLE001 - a machine must not go on moving with nobody in charge
+            text = f"{type(error).__name__}: {error}"
+            self.controller.note("failure", text=text, where=traceback.format_exc())
+            self.controller.fault(Trouble(cause=Cause.INTERNAL), text)
+            self._order(self.controller.orders(), now)
+            self._status = self.controller.status(now)
+
     def _run(self, clock: Callable[[], float]) -> None:
         due = clock()
         while not self._over.is_set():
             began = clock()
-            self.turn(began)
+            self._safe_turn(began)
             spent = clock() - began
             load = self.load
             load.turns, load.seconds = load.turns + 1, load.seconds + spent
