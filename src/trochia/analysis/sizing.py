@@ -93,7 +93,7 @@ class Sizing:
     motor_heat, rated_heat, driver_heat
         With all current on [W]; the rated one is what the catalogue allows for ever.
     reach
-        Speed at which the usable torque ends under this load, without acceleration [rad/s].
+        Speed at which the usable torque ends under this load without acceleration, or a fifth of it is left [rad/s].
     """
 
     speed: float
@@ -192,7 +192,7 @@ def _judged(motor: Drive, omega: float, torque: float, available: float, effecti
         motor_heat=warm.motor,
         rated_heat=warm.rated,
         driver_heat=warm.driver,
-        reach=reach,
+        reach=min(reach, motor.made.top()),
         problems=tuple(problems),
         remarks=tuple(remarks),
     )

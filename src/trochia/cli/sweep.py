@@ -181,7 +181,7 @@ def _show(found: _Found) -> None:
                f"swings at {figures['resonance_Hz']:.0f} Hz")  # fmt: skip
     for name, words in (("corner_rpm", "the supply drives the full current up to {:.0f} rpm"),
                         ("start_stop_rpm", "starts without a ramp below some {:.0f} rpm (an estimate from energy)"),
-                        ("fastest_rpm", "under its load it runs up to {:.0f} rpm")):  # fmt: skip
+                        ("fastest_rpm", "of use up to {:.0f} rpm, a fifth of its torque")):  # fmt: skip
         if figures[name] is not None:
             click.echo(f"  {words.format(figures[name])}")
     for low, high in figures["unstable_rpm"]:

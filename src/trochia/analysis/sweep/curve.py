@@ -84,12 +84,12 @@ class Curve:
             | {name: None if values is None else float(values[i]) for name, values in columns.items()}
             for i, speed in enumerate(self.speeds.tolist())
         ]
-        corner, fastest = self.made.corner, self.made.fastest(self.load)
+        corner, fastest = self.made.corner, min(self.made.fastest(self.load), self.made.top(FALLEN))
         return {
             "holding_torque_Nm": self.made.holding,
             "current_A": self.made.current,
             "corner_rpm": None if corner is None else corner * RPM,
-            "fastest_rpm": None if math.isinf(fastest) else fastest * RPM,
+            "fastest_rpm": fastest * RPM,
             "resonance_Hz": self.resonance,
             "start_stop_rpm": self.start_stop * RPM,
             "unstable_rpm": [[low * RPM, high * RPM] for low, high in self.unstable()],
@@ -121,7 +121,7 @@ def curve(
     timing
         Also search the pull-out and start/stop speeds on the twin, with pulses timed so, in steps of 1 rpm.
     """
-    end = _end(made) if top is None else top
+    end = made.top(FALLEN) if top is None else top
     speeds = np.linspace(end / points, end, points)
     torque = made.pull_out(speeds)
     measured = pull_in = None
@@ -145,15 +145,6 @@ def curve(
         start_stop=_start_stop(made, load),
         limits={} if timing is None else _limits(made, load, end, timing),
     )
-
-
-def _end(made: Fed) -> float:
-    """Return the speed at which the torque has fallen to a fifth."""
-    least = FALLEN * float(made.pull_out(np.array(0.0)))
-    high = 1.0
-    while float(made.pull_out(np.array(high))) > least and high < 1e4:
-        high *= 1.05
-    return high
 
 
 def _growth(made: Fed, speed: float, load: ShaftLoad) -> float:

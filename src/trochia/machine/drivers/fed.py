@@ -132,6 +132,13 @@ class Fed:
         """Return the torque at which the motor falls out of step at shaft speeds (...) [N·m], frictions taken off."""
         return pull_out_torque(self.motor, omega, self.amplitude, current=self.current_amplitude, load=load)
 
+    def top(self, part: float = 0.2) -> float:
+        """Return the speed up to which a part of the torque at rest is left [rad/s]; what one may call usable."""
+        least, high = part * float(self.pull_out(np.array(0.0))), 1.0
+        while float(self.pull_out(np.array(high))) > least and high < 1e4:
+            high *= 1.05
+        return high
+
     def fastest(self, load: ShaftLoad = FREE) -> float:
         """Return the speed at which the load takes all torque, without acceleration [rad/s]; 0: it never runs.
 
