@@ -79,6 +79,7 @@ def test_grbl(settings: Path):
         Fraction("26.67"),
         -800,
     ]  # $3=5: X and Z inverted
+    assert machine.dialect == "grbl"
     assert z.velocity == pytest.approx(500 / 60)
     assert y.minimum == -180.0
     assert {joint.pulses.length for joint in machine.joints} == {10e-6}

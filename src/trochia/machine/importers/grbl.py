@@ -35,7 +35,7 @@ def read(text: str, file: str) -> Imported:
     if not axes:
         raise ConfigError("expected GRBL's settings $100, $110, $120, $130 and on, found no whole axis",
                           source=Source(file, 1), hint="Send $$ to the board and save all of its answer.")  # fmt: skip
-    result.document["kinematics"] = "cartesian"
+    result.document |= {"kinematics": "cartesian", "dialect": "grbl"}
     _pulses(settings, result, axes)
     _tool(settings, result)
     for name, why in _WHY.items():

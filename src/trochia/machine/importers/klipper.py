@@ -61,7 +61,7 @@ def _printer(settings: Settings, result: Imported) -> dict[str, Fraction]:
     if kinematics.value not in _KINEMATICS:
         raise settings.error(kinematics, f"expected one of {', '.join(_KINEMATICS)}, not {kinematics.value!r}",
                              hint="Other kinematics cannot be imported yet.")  # fmt: skip
-    result.document["kinematics"] = kinematics.value
+    result.document |= {"kinematics": kinematics.value, "dialect": "marlin"}  # whose G-code Klipper reads
     limits: dict[str, Fraction] = {}
     for name in ("max_velocity", "max_accel", "max_z_velocity", "max_z_accel"):
         if (value := settings.number("printer", name)) is not None:
