@@ -169,7 +169,10 @@ class LiveTwin:
             self._rest()
             self._outputs_due()
             return ticks
+        braking = self._executor.braking
         told = self._executor.run(ticks, one=bool(self._watch))
+        if self._executor.rate == 0.0 and not braking:
+            self._troubles.append(Trouble(cause=Cause.UNDERRUN))
         self.plant.follow(told.commanded - self._offset)
         self._now += told.ticks * self.machine.servo_period
         self._velocity, self._line = told.velocity, told.line

@@ -26,6 +26,6 @@ class Activity(Protocol):
         """Brake along the path, as soon as an order can act (``latency`` s from now)."""
         ...
 
-    def finish(self) -> Orders:
-        """Return what is left to set once motion is still."""
+    def finish(self, *, whole: bool) -> Orders:
+        """Return what is left to set once motion is still; ``whole``: it has come to its own end, or to a pause."""
         ...

@@ -51,8 +51,8 @@ TROUBLES: dict[Cause, Row] = {
         "Look at the cable and the supply, then connect again; the machine stopped from what it held.", trusted=False,
     ),
     Cause.UNDERRUN: Row(
-        "motion ran out while moving: {value:.3g} s were left",
-        "The host was too slow or the link too thin: close other programs, or raise the baud rate.",
+        "motion ran out while moving, and was stopped along its path",
+        "The host was too slow or the link too thin: close other programs, or raise the baud rate.", at_once=True,
     ),
     Cause.DRIVE: Row(
         "the drive of {axis} reports a fault",
@@ -72,6 +72,10 @@ TROUBLES: dict[Cause, Row] = {
     Cause.HOMING: Row("homing {axis} failed: {text}", "Look at the switch, its wiring and the machine file's homing."),
     Cause.PROBE: Row("probing failed: {text}", "Look at the probe and the way it was given."),
     Cause.PROGRAM: Row("the program cannot go on: {text}", "Mend the line named, then run from it."),
+    Cause.INTERNAL: Row(
+        "the controller failed: {text}", "Keep the journal and report it; then acknowledge, and home.", at_once=True,
+        trusted=False, dark=True,
+    ),
     Cause.POWER: Row(
         "the controller was not closed down: line {line} was executed last",
         "Home the machine; then run-from offers to go on from there.", trusted=False,

@@ -12,6 +12,7 @@ import numpy as np
 
 from trochia.backends.live import Orders, Trouble
 from trochia.controller.alarms import TROUBLES, Alarms
+from trochia.controller.doings import OUTPUTS_OFF
 from trochia.controller.handlers import HANDLERS
 from trochia.controller.job import Job
 from trochia.controller.jog import Jog
@@ -30,8 +31,6 @@ if TYPE_CHECKING:
     from trochia.messages import AnyCommand
 
 POINT = 0.01  #: time between the points a journal gets [s]
-#: outputs of every backend, off
-STILL = {"spindle": 0.0, "flood": 0.0, "mist": 0.0}
 
 
 class Controller:
@@ -164,7 +163,7 @@ class Controller:
         if row.warning:
             return
         self.pending.append(Orders(stop=row.at_once or row.dark, lit=False, enable=False if row.dark else None,
-                                   outputs=STILL))  # fmt: skip
+                                   outputs=OUTPUTS_OFF))  # fmt: skip
         if row.at_once or row.dark:
             self.activity = None
         elif self.activity is not None:
@@ -263,7 +262,7 @@ class Controller:
             if whole and self.running is not None:
                 self.work = self.running.work
             else:
-                self.pending.append(Orders(lit=False, outputs=STILL))
+                self.pending.append(Orders(lit=False, outputs=OUTPUTS_OFF))
             self.note("end", whole=whole, line=self.report.line)
         self.activity = self.running = self.request = None
 

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trochia.backends.segments import Segments, joined
-from trochia.planner.limits import Limits
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -42,6 +41,8 @@ class Feeder:
         Stream time of plan time 0 [s].
     ahead
         Motion the backend wants to hold [s].
+    power
+        Factor (times,) of the beam's power at times of a portion; None: 1.
 
     Attributes
     ----------
@@ -49,15 +50,19 @@ class Feeder:
         Plan time up to which segments were given out [s].
     """
 
-    def __init__(self, live: LivePlan, machine: Machine, *, origin: float, ahead: float) -> None:
+    def __init__(
+        self, live: LivePlan, machine: Machine, *, origin: float, ahead: float,
+        power: Callable[[Portion, NDArray[np.float64]], NDArray[np.float32]] | None = None,
+    ) -> None:  # fmt: skip
         self.live = live
         self.origin = origin
         self.sent = 0.0
         self.until = math.inf  # plan time beyond which nothing is sent: a pause
         self.dark_until = 0.0  # plan time up to which the plan may keep the beam dark: holds and ways back
         self._matrix = machine.kinematics.matrix
-        self._limits = Limits.of(machine)
+        self._limits = live.rules.limits
         self._ahead = ahead
+        self._power = power
         self._stops: list[tuple[float, float]] = []  # (plan time at a row's end, its ∫ s du)
 
     def plan_time(self, executed: float) -> float:
@@ -131,6 +136,8 @@ class Feeder:
         power = part.power_at(middle).astype(np.float32)
         if self.dark_until > part.begin and power.any():
             power = np.array([self.live.state(t).power for t in middle.tolist()], np.float32)
+        if self._power is not None and power.any():
+            power = power * self._power(part, middle)
         return Segments(
             duration=h, joints=joints, line=part.line_at(middle).astype(np.uint32), power=power,
             slew=self._slew(part, begin, h),
@@ -145,7 +152,8 @@ class Feeder:
         limits = self._limits
         v = part.derivative(times, 1) @ limits.matrix.T
         a = part.derivative(times, 2) @ limits.matrix.T
-        room = np.where(v * a < 0.0, limits.acceleration - np.abs(a), limits.acceleration)
+        most = limits.acceleration_at(np.abs(v))
+        room = np.where(v * a < 0.0, most - np.abs(a), most)
         with np.errstate(divide="ignore", invalid="ignore"):
             slew = np.where(np.abs(v) > 1e-9, np.maximum(room, 0.0) / np.abs(v), STEEPEST)
         return np.minimum(slew.min(axis=1).reshape(len(h), -1).min(axis=1), STEEPEST)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from trochia.backends.live import Orders, Trouble
+from trochia.controller.doings import OUTPUTS_OFF
 from trochia.controller.homing import Home as Homing
 from trochia.controller.job import Job, Options
 from trochia.controller.jog import Jog
@@ -19,6 +20,9 @@ from trochia.errors import LimitError, LocalProtocolError, OutOfTravelError
 from trochia.messages import Cause
 from trochia.messages import command as c
 from trochia.program import AXES
+
+LEAST = 0.01  #: override of feed or rapid below which motion is held
+STAYS = 1e-6  #: extent of an axis that does not move [mm or degree]
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -86,7 +90,9 @@ def step(it: Controller, _command: c.Step, _now: float) -> str:
     if it.state is State.HELD and isinstance(it.activity, Job):
         if not it.activity.options.block_by_block:
             raise LocalProtocolError("the job was not started block by block", hint="Resume it, or begin with step.")
-        return resume(it, c.Resume(), 0.0)
+        told = resume(it, c.Resume(), 0.0)
+        it.activity.by_block = True
+        return told
     return _start(it, block_by_block=True)
 
 
@@ -111,7 +117,7 @@ def hold(it: Controller, _command: c.Hold, _now: float) -> str:
 def abort(it: Controller, _command: c.Abort, _now: float) -> str:
     """Brake, and give up."""
     if it.state is State.HELD:
-        it.pending.append(Orders(outputs={"spindle": 0.0, "flood": 0.0, "mist": 0.0}))
+        it.pending.append(Orders(lit=False, outputs=OUTPUTS_OFF))
         it.note("end", whole=False, line=it.report.line)
         it.activity = it.running = it.request = None
     elif it.activity is not None and it.state is not State.HOLDING:
@@ -121,8 +127,10 @@ def abort(it: Controller, _command: c.Abort, _now: float) -> str:
 
 def resume(it: Controller, _command: c.Resume, _now: float) -> str:
     """Go on."""
+    _check_overrides(it)
     if isinstance(it.activity, Job):
-        it.back = it.activity.resume(it.report)
+        it.activity.by_block = it.switches.single_block
+        it.back = it.activity.resume(it.report, feed=it.overrides.feed, rapid=it.overrides.rapid)
     it.request = None
     return ""
 
@@ -149,9 +157,18 @@ def override(it: Controller, command: c.Override, _now: float) -> str:
     """Scale feeds, rapids, spindle."""
     given = {name: getattr(command, name) for name in it.overrides.__struct_fields__}
     it.overrides = msgspec.structs.replace(it.overrides, **{n: v for n, v in given.items() if v is not None})
-    if isinstance(it.activity, Job) and it.state in {State.RUNNING, State.STEPPING, State.RESUMING}:
-        it.activity.override(it.report, it.latency, feed=max(it.overrides.feed, 0.01),
-                             rapid=max(it.overrides.rapid, 0.01))  # fmt: skip
+    if not isinstance(it.activity, Job):
+        return ""
+    it.activity.doings.spindle = it.overrides.spindle
+    if command.spindle is not None:
+        it.pending.append(Orders(outputs=dict(it.activity.doings.turning())))
+    if it.state not in {State.RUNNING, State.STEPPING, State.RESUMING}:
+        return ""
+    if min(it.overrides.feed, it.overrides.rapid) < LEAST:
+        it.activity.hold(it.report, it.latency)
+        it.enter(State.HOLDING)
+        return "held: an override is 0"
+    it.activity.override(it.report, it.latency, feed=it.overrides.feed, rapid=it.overrides.rapid)
     return ""
 
 
@@ -246,6 +263,11 @@ def _axis(it: Controller, name: str) -> Axis:
                              hint="It has " + " ".join(axis.name for axis in it.machine.axes))  # fmt: skip
 
 
+def _check_overrides(it: Controller) -> None:
+    if min(it.overrides.feed, it.overrides.rapid) < LEAST:
+        raise LocalProtocolError("an override is 0: nothing would move", hint="Raise it to 1 % at least, then go on.")
+
+
 def _start(it: Controller, *, block_by_block: bool) -> str:
     if it.loaded is None:
         raise LocalProtocolError("no program is loaded", hint="Load one first.")
@@ -257,16 +279,24 @@ def _start(it: Controller, *, block_by_block: bool) -> str:
 
 
 def _begin(it: Controller, text: str, name: str, *, block_by_block: bool) -> str:
+    _check_overrides(it)
     made = it.readier.ready(
         text, name, work=it.work, at=it.position(), block_delete=it.switches.block_delete, exact=block_by_block,
         bounded=_known(it),
     )  # fmt: skip
+    for axis in it.machine.axes:
+        low, high = made.plan.extents.get(axis.name, (0.0, 0.0))
+        if not it.trusted[axis.name] and high - low > STAYS:
+            raise LocalProtocolError(f"nobody knows where {axis.name} stands", hint="Home it first, or jog.")
+        if it.trusted[axis.name] and not _known(it) and not axis.minimum - STAYS <= low <= high <= axis.maximum + STAYS:
+            raise OutOfTravelError(f"{axis.name} would go from {low:g} to {high:g} {axis.unit}, its travel is "
+                                   f"{axis.minimum:g} to {axis.maximum:g}")  # fmt: skip
     options = Options(
         optional_stop=it.switches.optional_stop, block_by_block=block_by_block,
-        dark=it.switches.dry_run, feed=max(it.overrides.feed, 0.01), rapid=max(it.overrides.rapid, 0.01),
+        dark=it.switches.dry_run, feed=it.overrides.feed, rapid=it.overrides.rapid, spindle=it.overrides.spindle,
     )  # fmt: skip
-    it.running = made
     it.begin(Job(made.plan, it.machine, options, origin=it.report.executed, ahead=it.ahead))
+    it.running = made
     it.pending.append(Orders(lit=it.armed and not it.switches.dry_run, watch=()))
     it.note("begin", name=name, seconds=made.plan.time_s)
     return f"{made.plan.time_s:.1f} s"

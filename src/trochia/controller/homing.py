@@ -28,6 +28,11 @@ if TYPE_CHECKING:
     from trochia.machine.axes import Axis
     from trochia.machine.homing import Homing
 
+
+class _NotFound(Exception):  # noqa: N818 - it is no error: it ends a script
+    """A switch was not where it should be; the fault is raised already."""
+
+
 FURTHER = 1.1  #: of the travel is searched
 SEARCH, LATCH = 0.2, 0.1  #: of the axis' velocity, of the search's, where the file says nothing
 
@@ -91,7 +96,7 @@ class Home:
             self._feeder.live.hold(at)
             self._feeder.replan(at)
 
-    def finish(self) -> Orders:
+    def finish(self, *, whole: bool) -> Orders:  # noqa: ARG002 - of the protocol
         """Watch nothing any more."""
         return Orders(watch=())
 
@@ -102,7 +107,7 @@ class Home:
         self._feeder = None
         try:
             move = next(self._script)
-        except StopIteration:
+        except (StopIteration, _NotFound):
             self._over = True
             return
         if move is None:
@@ -133,17 +138,14 @@ class Home:
         it.trusted[axis.name] = False
         if it.report.inputs.get(name):
             yield Move(axis, self._here(axis) - sign * reach, latch, Watch(name=name, level=False))
-            if not self._caught("it stays active while the axis drives away from it", axis):
-                return
+            self._check("it stays active while the axis drives away from it", axis)
         yield Move(axis, self._here(axis) + sign * reach, search, Watch(name=name, level=True))
-        if not self._caught(f"the switch {name} was not found in {reach:g} {axis.unit}", axis):
-            return
+        self._check(f"the switch {name} was not found in {reach:g} {axis.unit}", axis)
         yield Move(axis, self._here(axis) - sign * home.back_off, search)
         if it.report.inputs.get(name):
             yield Move(axis, self._here(axis) - sign * reach, latch, Watch(name=name, level=False))
         yield Move(axis, self._here(axis) + sign * 2.0 * home.back_off, latch, Watch(name=name, level=True))
-        if not self._caught(f"the switch {name} was lost on the second approach", axis):
-            return
+        self._check(f"the switch {name} was lost on the second approach", axis)
         self._name(axis, home)
         yield None  # until the backend has taken the name
         if home.rest is not None:
@@ -152,11 +154,10 @@ class Home:
     def _here(self, axis: Axis) -> float:
         return self._it.position()[axis.name]
 
-    def _caught(self, why: str, axis: Axis) -> bool:
-        if self._it.report.caught is not None:
-            return True
-        self._it.fault(Trouble(cause=Cause.HOMING, joint=axis.name), why)
-        return False
+    def _check(self, why: str, axis: Axis) -> None:
+        if self._it.report.caught is None:
+            self._it.fault(Trouble(cause=Cause.HOMING, joint=axis.name), why)
+            raise _NotFound
 
     def _name(self, axis: Axis, home: Homing) -> None:
         """Call the caught place by the reference's position."""

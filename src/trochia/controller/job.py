@@ -13,20 +13,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trochia.backends.live import Orders
+from trochia.controller.doings import Doings
 from trochia.controller.feeder import ROW, Feeder
 from trochia.controller.states import Event
 from trochia.planner.live import LivePlan
-from trochia.program import (
-    Action,
-    Coolant,
-    End,
-    Message,
-    Output,
-    Pause,
-    Spindle,
-    SynchronisedOutput,
-    ToolChange,
-)
+from trochia.program import Action, Pause, ToolChange
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -49,6 +40,7 @@ class Options:
     dark: bool = False  # beam and spindle stay off
     feed: float = 1.0
     rapid: float = 1.0
+    spindle: float = 1.0
 
 
 class Job:
@@ -65,20 +57,21 @@ class Job:
     ----------
     waiting
         The action the program waits at, or None.
-    messages
-        What the program says to its operator, until taken.
+    by_block
+        Whether it rests after each block.
     """
 
     def __init__(self, plan: Plan, machine: Machine, options: Options, *, origin: float, ahead: float) -> None:
         self.plan = plan
         self.options = options
         self.waiting: Action | None = None
-        self.messages: list[Message] = []
+        self.by_block = options.block_by_block
+        self.doings = Doings(plan.program, machine, dark=options.dark, spindle=options.spindle)
         self._machine = machine
         live = LivePlan.of(plan.trajectory, machine)
         if (options.feed, options.rapid) != (1.0, 1.0):
             live.override(0.0, feed=options.feed, rapid=options.rapid)
-        self.feeder = Feeder(live, machine, origin=origin, ahead=ahead)
+        self.feeder = Feeder(live, machine, origin=origin, ahead=ahead, power=self.doings.power)
         self._moves = plan.path.segments["move"]
         self._actions = plan.program.actions
         self._next = 0  # number of the first action that has not been sent
@@ -103,11 +96,11 @@ class Job:
             self.waiting = next(waits, None)  # one that stands behind the last move
         return Event.PAUSED if self.waiting is not None else Event.STILL
 
-    def finish(self) -> Orders:
-        """Return what the actions up to the next that waits, or the program's end, set at once."""
+    def finish(self, *, whole: bool) -> Orders:
+        """Return what the actions up to the next that waits, or the program's end, set at once; nothing if given up."""
         outputs: dict[str, float] = {}
-        while self._next < len(self._actions) and self._actions[self._next] is not self.waiting:
-            outputs.update(self._sets(self._actions[self._next]))
+        while whole and self._next < len(self._actions) and self._actions[self._next] is not self.waiting:
+            outputs.update(self.doings.sets(self._actions[self._next]))
             self._next += 1
         return Orders(outputs=outputs)
 
@@ -118,15 +111,19 @@ class Job:
         self.feeder.dark_until = np.inf
         self._replan(at)
 
-    def resume(self, report: Report) -> float:
-        """Go on, after a hold backing up to where a beam is to relight; return the plan time when that is made up."""
+    def resume(self, report: Report, *, feed: float, rapid: float) -> float:
+        """Go on at these overrides, after a hold backing up to where a beam is to relight.
+
+        Returns the plan time when that is made up.
+        """
         if self.waiting is not None:
-            if self.waiting is not BLOCK_END:
-                self._next = max(self._next, self._actions.index(self.waiting) + 1)
+            self._next += self.waiting is not BLOCK_END  # everything before it has been set at its rest
             self.waiting = None
             self.feeder.until = np.inf
+            self._scale(self.feeder.sent, feed, rapid)
             return 0.0
         now = max(self.feeder.plan_time(report.executed), self.feeder.end)
+        self._scale(now, feed, rapid)
         back = self.feeder.live.resume(now, relight=self._machine.beam is not None and not self.options.dark)
         self.feeder.sent, self.feeder.dark_until = now, back + ROW
         return back
@@ -134,8 +131,8 @@ class Job:
     def override(self, report: Report, latency: float, *, feed: float, rapid: float) -> None:
         """Change the overrides as soon as an order can act."""
         at = self._soonest(report, latency)
-        self.feeder.live.override(at, feed=feed, rapid=rapid)
-        self._replan(at)
+        if self._scale(at, feed, rapid):
+            self._replan(at)
 
     def place(self, report: Report) -> tuple[int, float]:
         """Return the line executed and how far along the program's time [s]."""
@@ -145,6 +142,14 @@ class Job:
 
     def _soonest(self, report: Report, latency: float) -> float:
         return min(self.feeder.plan_time(report.executed) + latency, self.feeder.sent)
+
+    def _scale(self, at: float, feed: float, rapid: float) -> bool:
+        """Change the overrides from a plan time on; False where they are the same."""
+        speeds = self.feeder.live.speeds
+        if (speeds.feed, speeds.rapid) == (feed, rapid):
+            return False
+        self.feeder.live.override(at, feed=feed, rapid=rapid)
+        return True
 
     def _replan(self, at: float) -> None:
         self.feeder.replan(at)
@@ -162,7 +167,7 @@ class Job:
             if reached >= waits and number is not None:
                 return self._pause(t, self._actions[number])
             line = self._line(reached)
-            if self.options.block_by_block and line not in {self._block, None}:
+            if self.by_block and line not in {self._block, None}:
                 if self._block is not None:
                     return self._pause(t, BLOCK_END)
                 self._block = line
@@ -186,6 +191,8 @@ class Job:
     def _reached(self, portions: list[Portion]) -> Iterator[tuple[float, int]]:
         """Yield (plan time, move) at the start of each phase: actions that stand at or before the move are due then."""
         for part in portions:
+            if part.backwards:
+                continue  # what stands there was done on the way out
             rests = part.phases["flags"] & REST == REST
             rows = part.phases["segment"].astype(np.int64) + part.first
             for t, row, s, rest in zip(part.phases["t"], rows, part.phases["s"], rests, strict=True):
@@ -199,31 +206,6 @@ class Job:
                 action = self._actions[self._next]
                 if self._waits(action) and action is self.waiting:
                     break
-                yield from ((self.feeder.origin + t, name, value) for name, value in self._sets(action))
+                yield from ((self.feeder.origin + t, name, value) for name, value in self.doings.sets(action))
                 self._sent.append((t, self._next))
                 self._next += 1
-
-    def _sets(self, action: Action) -> Iterator[tuple[str, float]]:
-        """Yield the outputs an action sets."""
-        match action:
-            case Spindle(direction=direction, speed=speed):
-                yield "spindle", 0.0 if self.options.dark else direction * speed
-            case Coolant(mist=mist, flood=flood):
-                yield from (("mist", float(mist)), ("flood", float(flood)))
-            case End():
-                yield from (("spindle", 0.0), ("mist", 0.0), ("flood", 0.0))
-            case Output(index=index, value=value) | SynchronisedOutput(index=index, value=value):
-                name = output_name(self._machine, index, analogue=isinstance(value, float))
-                if name is not None:
-                    yield name, float(value)
-            case Message():
-                self.messages.append(action)
-            case _:
-                pass
-
-
-def output_name(machine: Machine, index: int, *, analogue: bool) -> str | None:
-    """Return the output that M62 to M68 call by number: the machine file's outputs of that kind, in its order."""
-    kinds = {"analog-output"} if analogue else {"latched", "timed", "train"}
-    names = [channel.name for channel in machine.io if channel.kind in kinds]
-    return names[index] if index < len(names) else None

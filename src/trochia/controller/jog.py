@@ -67,6 +67,6 @@ class Jog:
         self.feeder.live.hold(at)
         self.feeder.replan(at)
 
-    def finish(self) -> Orders:
+    def finish(self, *, whole: bool) -> Orders:  # noqa: ARG002 - of the protocol
         """Return nothing: a jog sets nothing."""
         return Orders()

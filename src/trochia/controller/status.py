@@ -38,6 +38,15 @@ def position_of(machine: Machine, report: Report) -> dict[str, float]:
     return {axis.name: float(value) for axis, value in zip(machine.axes, found, strict=True)}
 
 
+def unit_of(machine: Machine, joint: str) -> str:
+    """Return the unit of a joint or axis by its name: that of the first axis it moves; empty where there is none."""
+    for axis in machine.axes:
+        if axis.name == joint:
+            return axis.unit
+    rows = {j.name: row for j, row in zip(machine.joints, machine.kinematics.matrix, strict=True)}
+    return machine.axes[int(np.argmax(np.abs(rows[joint])))].unit if joint in rows else ""
+
+
 def axis_statuses(
     machine: Machine, report: Report, work: WorkState, trusted: Mapping[str, bool]
 ) -> tuple[AxisStatus, ...]:

@@ -24,6 +24,7 @@ class Cause(Enum):
     PROBE = "probe"
     PROGRAM = "program"
     POWER = "power-loss"
+    INTERNAL = "internal"
 
 
 class Fault(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):

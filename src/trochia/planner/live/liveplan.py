@@ -110,6 +110,11 @@ class LivePlan:
         return cls(Road(axes, pave(blocks, machine, continuity=rules.profile.continuity)), rules)
 
     @property
+    def rules(self) -> Rules:
+        """What the motion keeps to."""
+        return self._rules
+
+    @property
     def end(self) -> float | None:
         """When the motion ends, or comes to rest in a hold [s]; None while that is not planned yet."""
         ahead = self._legs[-1].ahead

@@ -55,7 +55,7 @@ class Rules:
     def of(cls, machine: Machine, profile: str | None = None) -> Rules:
         """Return the rules of a machine; errors are those of :func:`trochia.planner.profile_of`."""
         name = profile_of(machine, profile)
-        return cls(limits=Limits.of(machine), profile=PROFILES[name], name=name)
+        return cls(limits=Limits.of(machine, motors=PROFILES[name].by_curves), profile=PROFILES[name], name=name)
 
     @property
     def jerk_limited(self) -> bool:
