@@ -33,7 +33,8 @@ class Piece(NamedTuple):
 def ramp(here: tuple[float, float], there: tuple[float, float], most_a: float, most_j: float) -> list[Piece]:
     """Return the quickest pieces from (v, a) to (v, a): jerk ±J, constant a, jerk ∓J, those of no duration left out.
 
-    Where a is beyond A at the start it is brought back at once.  Speed may fall below zero on the way: callers look.
+    Where a is beyond A at the start it is brought back at once, unless the goal would be missed by that: then a goes
+    as far as it takes.  Speed may fall below zero on the way: callers look.
     """
     (v0, a0), (v1, a1) = here, there
     if math.isinf(most_j):
@@ -45,10 +46,10 @@ def ramp(here: tuple[float, float], there: tuple[float, float], most_a: float, m
     peak = up * math.sqrt(max(square, 0.0))
     even = 0.0
     if abs(peak) > most_a:
-        peak = up * most_a
-        even = (v1 - v0 - (_changed(a0, peak, most_j) + _changed(peak, a1, most_j))) / peak
-    first, last = _jerk(a0, peak, most_j), _jerk(peak, a1, most_j)
-    return _pieces(v0, a0, first, (max(even, 0.0), 0.0), last)
+        most = up * most_a
+        even = (v1 - v0 - (_changed(a0, most, most_j) + _changed(most, a1, most_j))) / most
+        peak, even = (most, even) if even >= 0.0 else (peak, 0.0)
+    return _pieces(v0, a0, _jerk(a0, peak, most_j), (even, 0.0), _jerk(peak, a1, most_j))
 
 
 def _jerk(a0: float, a1: float, most_j: float) -> tuple[float, float]:

@@ -93,10 +93,11 @@ def keeps(road: Road, rules: Rules, phases: NDArray[Any], feed: float) -> bool:
         return True
     rows = phases["segment"].astype(np.int64) - road.base
     passed = rows[:-1][rows[1:] != rows[:-1]]
-    if road.segments["stop"][passed].any() or phases["v"].min() < -_NOTHING:
-        return False
     states = np.repeat(phases, _INTERVALS + 1)
     tau = np.tile(np.linspace(0.0, 1.0, _INTERVALS + 1), len(phases)) * states["duration"]
+    speeds = states["v"] + tau * (states["a"] + tau * states["j"] / 2)
+    if road.segments["stop"][passed].any() or speeds.min() < -_NOTHING * max(1.0, float(speeds.max())):
+        return False
     states = moved_on(states, tau, states["t"])
     states["segment"] -= np.uint32(road.base)
     most = road.segments["speed_limit"][states["segment"]] * feed
