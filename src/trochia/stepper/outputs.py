@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
+from trochia.backends.driven_stepper import DrivenStepper
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -73,10 +75,10 @@ class Calls:
 class TwinOutput:
     """The twin of a motor: its physics follow the steps, and lose some where the real motor would.
 
-    The twin's windings stay on: it models a motor under current.
+    A ``DrivenStepper`` lets its windings go when it is told to; a ``StepperTwin`` is a motor under current always.
     """
 
-    def __init__(self, twin: StepperTwin) -> None:
+    def __init__(self, twin: StepperTwin | DrivenStepper) -> None:
         self.twin = twin
         self._moments: list[float] = []
         self._directions: list[int] = []
@@ -89,11 +91,14 @@ class TwinOutput:
         self._directions.append(direction)
         if len(self._moments) == _BLOCK:
             self._hand_over()
-            if moment > self.twin.now:
-                self.twin.run(moment - self.twin.now, every=1_000_000)
+            self._go_on(moment)
 
     def energise(self, moment: float, *, on: bool) -> None:
-        """Do nothing: see the class."""
+        """Switch the windings on or off, as the driver does it."""
+        if isinstance(self.twin, DrivenStepper):
+            self._hand_over()
+            self._go_on(moment)
+            self.twin.set_enabled(on)
 
     def settle(self, moment: float, *, every: int = 1) -> StepperRun:
         """Let the twin go on to a moment [s], and return what it did since it was last looked at."""
@@ -103,6 +108,11 @@ class TwinOutput:
     def lost_steps(self, moment: float) -> int:
         """Return the full steps lost so far, the rotor given a quarter second of rest after ``moment`` [s]."""
         return int(self.settle(moment + 0.25).lost_steps[-1])
+
+    def _go_on(self, moment: float) -> None:
+        """Let the twin go on to a moment, if it is still to come."""
+        if moment > self.twin.now:
+            self.twin.run(moment - self.twin.now, every=1_000_000)
 
     def _hand_over(self) -> None:
         """Queue what is waiting."""

@@ -7,7 +7,9 @@ import time
 
 import pytest
 
+from trochia.backends.driven_stepper import DrivenStepper
 from trochia.backends.stepper_twin import StepperTwin
+from trochia.machine.drivers import HBridge, fed
 from trochia.machine.motors import ShaftLoad, motor
 from trochia.pulses.excitation import excitation
 from trochia.stepper import PacedTime, Stepper, TwinOutput, VirtualTime
@@ -50,3 +52,23 @@ def test_paced_time_does_not_run_ahead(monkeypatch: pytest.MonkeyPatch):
     assert wall[0] == pytest.approx(100.5)
     paced.wait_until(0.5)  # past already
     assert (paced.now, wall[0]) == (1.0, pytest.approx(100.5))
+
+
+def test_windings_that_are_let_go_hold_no_longer_and_align_when_they_are_on_again():
+    """A weight turns a released rotor by whole teeth; switched on again it stands on a stable point, steps lost."""
+    made = fed(SHIELD, HBridge(supply=12.0, excitation="two-phase", released="open"))
+    twin = DrivenStepper(made, ShaftLoad(inertia=2e-5, constant=0.02, viscous=1e-3))
+    output = TwinOutput(twin)
+    stepper = Stepper(output, VirtualTime())
+    output.settle(0.5)
+    held = float(output.settle(0.6).theta[-1])
+    assert abs(held) < 0.05
+    output.energise(0.6, on=False)
+    fallen = float(output.settle(1.6).theta[-1])
+    assert fallen < held - 1.0
+    output.energise(1.6, on=True)
+    run = output.settle(2.6)
+    assert abs(run.omega[-1]) < 0.05
+    assert run.lost_steps[-1] != 0
+    assert int(run.lost_steps[-1]) % 4 == 0
+    assert stepper.current_position() == 0
