@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import importlib.util
+import sys
 from collections import Counter
+from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -13,6 +16,25 @@ settings.register_profile("check", max_examples=60, deadline=None, derandomize=T
 settings.register_profile("soak", max_examples=6000, deadline=None, print_blob=True,
                           suppress_health_check=[HealthCheck.too_slow])  # fmt: skip
 settings.load_profile("check")
+
+
+def _load(name):
+    """Import a module that lies beside this file, once."""
+    if name in sys.modules:
+        return sys.modules[name]
+    spec = importlib.util.spec_from_file_location(name, Path(__file__).with_name(f"{name}.py"))
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="session")
+def grbl_model():
+    """The strict model of a GRBL 1.1 board, as a module."""
+    _load("grbl_language")
+    return _load("grbl_model")
+
 
 _compared = Counter[str]()  # programs compared with rs274 by all processes, see oracle/conftest.py
 
