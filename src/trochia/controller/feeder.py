@@ -58,6 +58,7 @@ class Feeder:
         self.origin = origin
         self.sent = 0.0
         self.until = math.inf  # plan time beyond which nothing is sent: a pause
+        self.lit_from = math.inf  # plan time at which the beam relights: a row begins there
         self.dark_until = 0.0  # plan time up to which the plan may keep the beam dark: holds and ways back
         self._matrix = machine.kinematics.matrix
         self._limits = live.rules.limits
@@ -90,6 +91,7 @@ class Feeder:
         self._stops = [stop for stop in self._stops if stop[0] > now]
         while self.sent < self.end - 1e-12 and not self._enough(now):
             begin, end = self.sent, min(self.sent + CHUNK, self.end)
+            end = self.lit_from if begin < self.lit_from < end else end
             portions = self._portions(begin, end)
             stop = until(portions)
             if stop is not None:

@@ -125,7 +125,7 @@ class Job:
         now = max(self.feeder.plan_time(report.executed), self.feeder.end)
         self._scale(now, feed, rapid)
         back = self.feeder.live.resume(now, relight=self._machine.beam is not None and not self.options.dark)
-        self.feeder.sent, self.feeder.dark_until = now, back + ROW
+        self.feeder.sent, self.feeder.lit_from, self.feeder.dark_until = now, back, back + ROW
         return back
 
     def override(self, report: Report, latency: float, *, feed: float, rapid: float) -> None:

@@ -144,6 +144,7 @@ class EveryState(RuleBasedStateMachine):
 
     @rule(command=COMMANDS)
     def command(self, command: c.AnyCommand) -> None:
+        self.runtime.turn(self.now)  # what has come about by now comes first
         was, kind = self.it.state, str(type(command).__struct_config__.tag)
         turned = (was, kind) in TABLE
         ack = self.runtime.command(command, self.now)

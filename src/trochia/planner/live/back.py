@@ -17,14 +17,18 @@ if TYPE_CHECKING:
 
 _LONGER = 1.5  #: a run-up that is too short is tried so much longer
 _AT_SPEED = 1.0 - 1e-9
+_ENOUGH = 1.5  #: of v times the worst stopping time: after such a run-up nearly the speed will do
+_NEAR_SPEED = 0.98
 
 
 def run_up(ahead: Lookahead, t: float, speeds: Speeds) -> Place:
     """Return where to begin at rest so that the place of ``t`` is passed as fast as ``t`` it was.
 
-    That is at the latest where motion last rested before, as far as that is in hand.
+    Or within 2 % of it, where more would take long.  At the latest that is where motion last rested before, as far as
+    that is in hand.
     """
     out = ahead.state(t)
+    # a plan of long curves differs a little with where it begins: the very speed may come from far behind only
     place, v = Place(int(out["segment"]), float(out["s"])), float(out["v"])
     earliest = ahead.rested_before(t)
     end = ahead.window_from(place.row)
@@ -35,7 +39,8 @@ def run_up(ahead: Lookahead, t: float, speeds: Speeds) -> Place:
             return earliest
         phases = plan_window(ahead.road, ahead.rules, start, end, speeds)
         view = Ahead(ahead.road, phases, place)
-        if view.state(view.begin)["v"] >= v * _AT_SPEED:
+        enough = _NEAR_SPEED if way >= _ENOUGH * v * ahead.rules.stopping_time else _AT_SPEED
+        if view.state(view.begin)["v"] >= v * enough:
             return start
         way *= _LONGER
 

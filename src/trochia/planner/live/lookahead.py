@@ -127,7 +127,9 @@ class Lookahead:
         return self._reach(row, FIRST + SETTLE)
 
     def passes(self, place: Place) -> float:
-        """Return when motion passes a place that is in hand [s]."""
+        """Return when motion passes a place [s], planning as far as that."""
+        while int(self.phases["segment"][self.safe - 1 if self.safe else 0]) <= place.row and self.extend():
+            pass
         return Ahead(self.road, self.phases, place).begin
 
     def place_of_end(self) -> Place:
