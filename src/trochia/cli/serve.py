@@ -1,0 +1,123 @@
+"""`trochia serve`: a machine under the live controller, for browsers and programs."""
+
+from __future__ import annotations
+
+import os
+import signal
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from trochia.cli import options
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from trochia.controller.runtime import Runtime
+    from trochia.machine.machine import Machine
+    from trochia.server import Desk, Doors, Served
+
+LOOPBACK = ("127.0.0.1", "::1", "localhost")
+file = click.Path(dir_okay=False, path_type=Path)
+
+
+def settings_folder() -> Path:
+    """Return where users are kept unless told otherwise."""
+    return Path(os.environ.get("XDG_CONFIG_HOME") or Path.home() / ".config") / "trochia"
+
+
+def users_option(command: Callable[..., None]) -> Callable[..., None]:
+    """Add the option that names the users file."""
+    return click.option("--users", "users_file", type=file, metavar="FILE",
+                        help="Who may log in; ~/.config/trochia/users.json unless given.")(command)  # fmt: skip
+
+
+@click.command()
+@options.machine
+@click.option("--backend", type=click.Choice(["twin"]), default="twin", show_default=True, help="Who moves.")
+@click.option("--port", type=click.IntRange(0, 65535), default=8765, show_default=True, help="0: any that is free.")
+@click.option("--host", default="127.0.0.1", show_default=True, metavar="ADDRESS",
+              help="Where to listen; beyond this computer only together with --allow.")  # fmt: skip
+@click.option("--allow", multiple=True, metavar="NAME",
+              help="A name or address by which browsers may reach the server (again for more).")  # fmt: skip
+@click.option("--certificate", type=file, metavar="PEM", help="Speak TLS with this certificate.")
+@click.option("--key", type=file, metavar="PEM", help="The certificate's private key.")
+@users_option
+@click.option("--journal", type=click.Path(file_okay=False, path_type=Path), metavar="DIR",
+              help="Folder of the machine's journal, and in it of the log of who asked for what; "
+                   "without it nothing is kept.")  # fmt: skip
+def command(
+    *, machine_name: str, backend: str, port: int, host: str, allow: tuple[str, ...], certificate: Path | None,
+    key: Path | None, users_file: Path | None, journal: Path | None,
+) -> None:  # fmt: skip
+    """Serve a machine: a page with its state and STOP, an HTTP and WebSocket interface, a Python client.
+
+    The first start makes a user `operator` and shows the password once; `trochia users` makes more.
+    Ctrl-C brakes what moves and switches the drives off.
+
+    Example: trochia serve -m xy-table --journal journal
+    """
+    if host not in LOOPBACK and not allow:
+        raise click.UsageError(f"--host {host} opens the machine to the network: name by --allow what browsers may "
+                               "call it, like --allow mill.local")  # fmt: skip
+    if (certificate is None) != (key is None):
+        raise click.UsageError("--certificate and --key go together")
+    from trochia.machine.load import load  # noqa: PLC0415 - `trochia --help` must stay light
+    from trochia.server import Desk, Doors, Served, Users, listen  # noqa: PLC0415
+
+    del backend  # there is one so far
+    users = Users(users_file or settings_folder() / "users.json")
+    machine = load(machine_name)
+    password = users.first()
+    if password is not None:
+        click.echo(f"user operator, password {password}\nshown this once; kept in {users.path} as a key only")
+    socket = listen(host, port)
+    doors = Doors.of(int(socket.getsockname()[1]), allow, secure=certificate is not None)
+    runtime = _runtime(machine, journal)
+    desk = Desk(runtime, users, doors, log=None if journal is None else journal / "access")
+    tls = (certificate, key) if certificate is not None and key is not None else None
+    _serve(runtime, desk, Served(desk, socket, tls), _address(doors, host))
+
+
+def _runtime(machine: Machine, journal: Path | None) -> Runtime:
+    import time  # noqa: PLC0415
+
+    from trochia.backends.live_twin import LiveTwin  # noqa: PLC0415 - only what moves needs a backend
+    from trochia.backends.switches import switches_of  # noqa: PLC0415
+    from trochia.controller.runtime import Runtime  # noqa: PLC0415
+
+    twin = LiveTwin(machine, switches=switches_of(machine))
+    return Runtime(twin, journal=journal, now=time.monotonic())
+
+
+def _address(doors: Doors, host: str) -> str:
+    """Return the address to tell people: the first name that was allowed, or where we listen."""
+    scheme = "https" if doors.secure else "http"
+    named = [
+        o for o in sorted(doors.origins) if not any(f"//{name}" in o for name in ("127.0.0.1", "localhost", "[::1]"))
+    ]
+    near = [o for o in sorted(doors.origins) if o.startswith(f"{scheme}://{f'[{host}]' if ':' in host else host}")]
+    return [*near, *named, *sorted(doors.origins)][0]
+
+
+def _serve(runtime: Runtime, desk: Desk, served: Served, address: str) -> None:
+    """Serve until told to stop, then bring the machine to rest."""
+    from trochia.server import bring_to_rest  # noqa: PLC0415
+
+    def terminated(_signal: int, _frame: object) -> None:
+        raise KeyboardInterrupt
+
+    signal.signal(signal.SIGTERM, terminated)
+    runtime.start()
+    click.echo(f"{runtime.backend.machine.name} at {address} (Ctrl-C ends)")
+    try:
+        served.run()
+    except KeyboardInterrupt:
+        click.echo("stopping")
+    finally:
+        rested = bring_to_rest(runtime)
+        served.close()
+        desk.close()
+        runtime.close()
+        click.echo("at rest, drives off" if rested else "the machine did not come to rest in time; drives off")
