@@ -63,8 +63,9 @@ uint64_t trochia_scurve_phases(const double *starts, uint64_t count, const troch
         if (tau == 0.0 && knot->segment > cursor->segment)
             cursor->segment = knot->segment;
         uint64_t segment = knot->flags ? knot->segment : cursor->segment;
-        int crosses =
-            !knot->flags && segment + 1 < count && starts[segment + 1] < knot[1].s - TROCHIA_SAME_PLACE(knot[1].s);
+        /* places in a segment are counted from its end too: a long one has more rounding than s before it */
+        int crosses = !knot->flags && segment + 1 < count &&
+                      starts[segment + 1] < knot[1].s - TROCHIA_SAME_PLACE(starts[segment + 2]);
         double until = crosses ? time_of(knot, starts[segment + 1] - knot->s, tau, end) : end;
         if (until > tau) {
             trochia_phase phase = phase_at(knot, starts, segment, tau);
