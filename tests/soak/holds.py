@@ -224,7 +224,7 @@ def keeps_path(b: Bench) -> None:
     points = np.array([p for _, p, _ in b.ticks]) @ np.linalg.pinv(where.matrix).T
     points = points[:: max(1, len(points) // 400)]
     at = b.ticks[0][0]
-    low, high = np.searchsorted(b.base.times, [at - 2.0, b.now + 2.0])
+    low, high = np.searchsorted(b.base.times, [at - 8.0, b.now + 2.0])
     path = b.base.path[max(low - 1, 0) : high + 1]
     path = path[np.append([True], np.linalg.norm(np.diff(path, axis=0), axis=1) > 1e-9)]
     for chunk in np.array_split(points, max(1, len(points) // 50)):

@@ -17,21 +17,21 @@ if TYPE_CHECKING:
 
 _LONGER = 1.5  #: a run-up that is too short is tried so much longer
 _AT_SPEED = 1.0 - 1e-9
-_ENOUGH = 1.5  #: of v times the worst stopping time: after such a run-up nearly the speed will do
-_NEAR_SPEED = 0.98
+_MOST = 2.5  #: of v times the worst stopping time: the longest run-up
 
 
 def run_up(ahead: Lookahead, t: float, speeds: Speeds) -> Place:
     """Return where to begin at rest so that the place of ``t`` is passed as fast as ``t`` it was.
 
-    Or within 2 % of it, where more would take long.  At the latest that is where motion last rested before, as far as
-    that is in hand.
+    At the latest that is where motion last rested before, as far as that is in hand; or where it comes nearest to that
+    speed, of run-ups that are not longer than any can need.
     """
     out = ahead.state(t)
     # a plan of long curves differs a little with where it begins: the very speed may come from far behind only
     place, v = Place(int(out["segment"]), float(out["s"])), float(out["v"])
     earliest = ahead.rested_before(t)
     end = ahead.window_from(place.row)
+    best, fastest = earliest, -1.0
     way = 0.5 * v * ahead.rules.stopping_time
     while True:
         start = behind(ahead.road, place, way)
@@ -39,10 +39,14 @@ def run_up(ahead: Lookahead, t: float, speeds: Speeds) -> Place:
             return earliest
         phases = plan_window(ahead.road, ahead.rules, start, end, speeds)
         view = Ahead(ahead.road, phases, place)
-        enough = _NEAR_SPEED if way >= _ENOUGH * v * ahead.rules.stopping_time else _AT_SPEED
-        if view.state(view.begin)["v"] >= v * enough:
+        passed = float(view.state(view.begin)["v"])
+        if passed >= v * _AT_SPEED:
             return start
+        if passed > fastest:
+            best, fastest = start, passed
         way *= _LONGER
+        if way > _MOST * v * ahead.rules.stopping_time:
+            return best
 
 
 def behind(road: Road, place: Place, way: float) -> Place:
