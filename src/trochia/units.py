@@ -80,6 +80,14 @@ _FACTORS["inertia"] = {"kg·m²": 1.0, "kg·m^2": 1.0, "kgm2": 1.0, "kg·cm²": 
 _FACTORS["mass"] = {"kg": 1.0, "g": 1e-3, "t": 1e3}
 _FACTORS["force"] = {"N": 1.0, "kN": 1e3}
 _FACTORS["power"] = {"W": 1.0, "kW": 1e3, "mW": 1e-3}
+_KRPM = 60 / (2 * math.pi * 1000)  #: of 1 rad/s, in thousands of rpm
+_FACTORS["torque constant"] = {"N·m/A": 1.0, "Nm/A": 1.0, "mN·m/A": 1e-3, "mNm/A": 1e-3}
+_FACTORS["emf constant"] = {"V·s/rad": 1.0, "Vs/rad": 1.0, "mV·s/rad": 1e-3, "V/krpm": _KRPM, "mV/rpm": _KRPM}
+_FACTORS["viscous friction"] = {"N·m·s/rad": 1.0, "Nms/rad": 1.0, "mN·m/krpm": 1e-3 * _KRPM}
+_FACTORS["stiffness"] = {"N·m/rad": 1.0, "Nm/rad": 1.0}
+_FACTORS["rate"] = {"1/s": 1.0}
+_FACTORS["position gain"] = {"V/rad": 1.0, "mV/rad": 1e-3}
+_FACTORS["integral gain"] = {"V/(rad·s)": 1.0}
 _FACTORS["temperature"] = {"°C": 1.0, "degC": 1.0}
 
 #: dimension -> unit -> factor, as floats

@@ -82,6 +82,12 @@ PHYSICAL = (
     JointSignal("load_angle", lambda joint: joint.load_angle, "degree", of=lambda joint: joint.fed is not None),
     JointSignal("lost_steps", lambda joint: joint.lost, "step", "<i8", lambda joint: joint.fed is not None),
 )
+CLOSED = (
+    JointSignal("measured", lambda joint: joint.measured, of=lambda joint: joint.closed),
+    JointSignal("command", lambda joint: joint.command, "V", of=lambda joint: joint.closed),
+    JointSignal("current", lambda joint: joint.current, "A", of=lambda joint: joint.closed),
+    JointSignal("torque", lambda joint: joint.torque, "N·m", of=lambda joint: joint.closed),
+)
 PATH = (
     PathSignal("path.speed", lambda block: block.motion.path_speed(block.t), "mm/s"),
     PathSignal("path.line", lambda block: np.asarray(block.motion.line_at(block.t), np.uint32), dtype="<u4"),
@@ -89,10 +95,10 @@ PATH = (
 )
 
 
-def signals(machine: Machine, *, physical: bool = False) -> Iterator[tuple[Channel, Taker]]:
+def signals(machine: Machine, *, physical: bool = False, closed: bool = False) -> Iterator[tuple[Channel, Taker]]:
     """Yield every channel of a machine's recordings and what takes its samples, in the order of the file.
 
-    ``physical`` adds those of steppers as physics.
+    ``physical`` adds those of steppers as physics, ``closed`` those of servos as physics.
     """
     units = ["mm" if axis.kind is AxisKind.LINEAR else "degree" for axis in machine.axes]
     for signal in AXIS:
@@ -100,7 +106,7 @@ def signals(machine: Machine, *, physical: bool = False) -> Iterator[tuple[Chann
             yield Channel(name=f"{axis.name}.{signal.quantity}", unit=units[i]), _column(signal, i)
     for i, (joint, row) in enumerate(zip(machine.joints, machine.kinematics.matrix, strict=True)):
         own = units[int(np.argmax(np.abs(row)))]
-        for signal in (*JOINT, *PHYSICAL) if physical else JOINT:
+        for signal in (*JOINT, *(PHYSICAL if physical else ()), *(CLOSED if closed else ())):
             if signal.of(joint):
                 unit = own if signal.unit is None else signal.unit
                 channel = Channel(name=f"joint.{joint.name}.{signal.quantity}", unit=unit, dtype=signal.dtype)

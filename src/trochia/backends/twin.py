@@ -8,7 +8,8 @@ and where the axes really are; ``signals.py`` has a row for each channel.
 An ideal stepper stands on the last step passed, an ideal servo on the nearest count of its encoder (on the load as on
 the motor: no loop is closed here); neither is late or loses anything, so what is left is resolution and lost motion.
 A stepper whose file names motor, driver and load is physics, where the motion has step pulses: it lags, swings and
-loses steps (``physical.py``).
+loses steps (``physical.py``).  A servo whose file names motor, amplifier and loop is physics too: it follows as its
+loop lets it (``closed.py``).
 """
 
 from __future__ import annotations
@@ -19,12 +20,13 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from trochia.backends.closed import ClosedJoints
 from trochia.backends.physical import PhysicalJoints
 from trochia.backends.signals import Sampled, signals
 from trochia.errors import ConfigError
 from trochia.kernels.twin import TwinJoint
 from trochia.pulses.steps import Motion as Stepped
-from trochia.recorder import Header
+from trochia.recorder import Channel, Header
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -32,6 +34,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from trochia.backends.protocol import Motion
+    from trochia.backends.signals import Taker
     from trochia.machine.joints import Joint
     from trochia.machine.machine import Machine
 
@@ -51,7 +54,7 @@ class Twin:
     slack
         Where every load lies in its backlash at the start, -1 to 1: 0 centred, -1 as after moving forwards.
     physical
-        Whether steppers are physics where the machine's file allows it; without it all joints are ideal.
+        Whether joints are physics where the machine's file allows it; without it all are ideal.
     """
 
     kind: ClassVar[str] = "twin"
@@ -78,8 +81,9 @@ class Twin:
             duration=motion.duration,
             machine=self.machine.name,
             program=program,
-            origin=f"twin of {'physical' if self._physical(motion) else 'ideal'} joints, slack {self.slack:g}",
-            channels=tuple(channel for channel, _ in signals(self.machine, physical=self._physical(motion))),
+            origin=f"twin of {'physical' if self._physical(motion) or self._closed else 'ideal'} joints, "
+            f"slack {self.slack:g}",
+            channels=tuple(channel for channel, _ in self._signals(motion)),
         )
 
     def run(self, motion: Motion) -> Iterator[Mapping[str, NDArray[Any]]]:
@@ -88,8 +92,9 @@ class Twin:
         inverse = np.linalg.pinv(matrix)
         start = motion.position(np.zeros(1))[0] @ matrix.T
         joints = [self._joint(joint, at) for joint, at in zip(self.machine.joints, start, strict=True)]
-        recorded = list(signals(self.machine, physical=self._physical(motion)))
+        recorded = self._signals(motion)
         real = self._steppers(motion)
+        closed = ClosedJoints.of(self.machine, motion, slack=self.slack) if self._closed else None
         # a millionth of a period: a duration is a sum, and rounding must not buy it one more sample
         samples = math.ceil(motion.duration / self.tick - 1e-6) + 1
         for first in range(0, samples, BLOCK):
@@ -100,10 +105,14 @@ class Twin:
             wanted = commanded @ matrix.T
             if real is not None:
                 real.feed(float(t[-1]) + self.tick)
+            if closed is not None:
+                closed.feed(float(t[-1]))
             done = [
-                real.joints[i].run(t.size) if real is not None and i in real.joints else joint.run(wanted[:, i])
+                real.joints[i].run(t.size) if real is not None and i in real.joints
+                else closed.joints[i].sample(t) if closed is not None and i in closed.joints
+                else joint.run(wanted[:, i])
                 for i, joint in enumerate(joints)
-            ]
+            ]  # fmt: skip
             actual = np.stack([block.load for block in done], axis=1) @ inverse.T
             block = Sampled(t=t, motion=motion, commanded=commanded, actual=actual, joints=done)
             yield {channel.name: take(block) for channel, take in recorded}
@@ -111,6 +120,15 @@ class Twin:
     def _physical(self, motion: Motion) -> bool:
         """Whether some joint is physics under this motion."""
         return self.physical and isinstance(motion, Stepped) and any(j.fed is not None for j in self.machine.joints)
+
+    @property
+    def _closed(self) -> bool:
+        """Whether some servo is physics."""
+        return self.physical and any(joint.closed for joint in self.machine.joints)
+
+    def _signals(self, motion: Motion) -> list[tuple[Channel, Taker]]:
+        """Return the channels of a recording and what takes their samples."""
+        return list(signals(self.machine, physical=self._physical(motion), closed=self._closed))
 
     def _steppers(self, motion: Motion) -> PhysicalJoints | None:
         """Return the physical joints, or None where there are none."""

@@ -27,7 +27,8 @@ LIMIT = 2**31  #: motor positions and terms of a gearing below this cannot overf
 class TwinBlock:
     """What a joint did over a block, each (samples,); integers where the joint counts them, else None.
 
-    ``load_angle`` [electrical degree] and ``lost`` [full steps] are a physical stepper's.
+    ``load_angle`` [electrical degree] and ``lost`` [full steps] are a physical stepper's; ``measured`` [mm or degree],
+    ``command`` [V], ``current`` [A] and ``torque`` [N·m] are a physical servo's.
     """
 
     position: NDArray[np.int64] | None
@@ -36,6 +37,10 @@ class TwinBlock:
     load: NDArray[np.float64]
     load_angle: NDArray[np.float64] | None = None
     lost: NDArray[np.int64] | None = None
+    measured: NDArray[np.float64] | None = None
+    command: NDArray[np.float64] | None = None
+    current: NDArray[np.float64] | None = None
+    torque: NDArray[np.float64] | None = None
 
 
 class TwinJoint:

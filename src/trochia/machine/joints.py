@@ -16,6 +16,7 @@ from trochia.machine.motors.catalogue import CatalogueStepper
 from trochia.machine.motors.library import motor as library_motor
 from trochia.machine.motors.wiring import WIRINGS, wired
 from trochia.machine.schema import Bound, Record, Variant, check_bounds, key
+from trochia.machine.servos import LOOPS, SERVO_MOTORS, DriveTrain, ServoAmplifier, ServoLoop
 from trochia.machine.transmissions import TRANSMISSIONS
 
 if TYPE_CHECKING:
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 
     from trochia.machine.drivers import Fed
     from trochia.machine.motors.hybrid import HybridStepper
+    from trochia.machine.servos import CatalogueDc, CataloguePmsm
     from trochia.machine.transmissions import Transmission
 
 _MODEL = key(Text(), "maker's name for it, for people")
@@ -73,11 +75,14 @@ class Stepper:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Servo:
-    """A servo with its amplifier; the loop's parameters come with the servo rooms."""
+    """A servo motor; the joint's amplifier, train and loop close its loop."""
 
     kind: ClassVar[str] = "servo"
 
     model: str | None = field(default=None, metadata=_MODEL)
+    catalogue: CatalogueDc | CataloguePmsm | None = field(
+        default=None, metadata=key(Variant(SERVO_MOTORS), "the motor's numbers, for its physics")
+    )
 
 
 Motor = Stepper | Servo
@@ -170,13 +175,45 @@ class Joint:
     load: JointLoad = field(
         default=JointLoad(), metadata=key(Record(JointLoad), "what the motor has to move, for its torque")
     )
+    amplifier: ServoAmplifier | None = field(
+        default=None, metadata=key(Record(ServoAmplifier), "what feeds a servo's motor")
+    )
+    train: DriveTrain = field(
+        default=DriveTrain(), metadata=key(Record(DriveTrain), "what is between a servo's motor and its load")
+    )
+    loop: ServoLoop | None = field(
+        default=None, metadata=key(Variant(LOOPS), "what closes a servo's loop; without it a servo is ideal")
+    )
 
     def __post_init__(self) -> None:
         check_bounds(self, path=f"joints.{self.name}")
+        self._check_servo()
         try:
             _ = self.fed
         except ConfigError as error:
             raise ConfigError(error.plain, key=f"joints.{self.name}.{error.key}", hint=error.hint) from None
+
+    def _check_servo(self) -> None:
+        """Refuse a loop without what it closes, and one that counts without an encoder."""
+        servo = isinstance(self.motor, Servo)
+        for name in ("amplifier", "loop"):
+            if getattr(self, name) is not None and not (isinstance(self.motor, Servo) and self.motor.catalogue):
+                raise ConfigError("needs a servo whose catalogue says what it is", key=f"joints.{self.name}.{name}",
+                                  hint='Like motor = { kind = "servo", catalogue = { kind = "dc", … } }.')  # fmt: skip
+        if self.loop is not None and self.amplifier is None:
+            raise ConfigError("needs the amplifier that it commands", key=f"joints.{self.name}.loop")
+        if self.train.stiffness is not None and not self.load.mass > 0:
+            raise ConfigError("needs a load behind it: give load.mass", key=f"joints.{self.name}.train.stiffness")
+        if self.closed and self.backlash and self.train.stiffness is None and self.encoder and self.encoder.on_load:
+            raise ConfigError("a loop that reads the load through backlash needs the stiffness it closes on",
+                              key=f"joints.{self.name}.train.stiffness")  # fmt: skip
+        if servo and self.loop is not None and self.loop.kind in ("pmac", "32nds") and self.encoder is None:
+            raise ConfigError("counts, and needs an encoder", key=f"joints.{self.name}.loop")
+
+    @property
+    def closed(self) -> bool:
+        """Whether the file says all of a servo's loop: motor, amplifier and gains; else a servo is ideal."""
+        return self.loop is not None
 
     @property
     def fed(self) -> Fed | None:

@@ -21,6 +21,7 @@ from trochia.machine.machine import Machine
 from trochia.machine.motors import CatalogueStepper
 from trochia.machine.resonance import Resonance
 from trochia.machine.schema import Bound, Key, Record, Variant, keys_of
+from trochia.machine.servos import LOOPS, SERVO_MOTORS, DriveTrain, NotchData, ServoAmplifier
 from trochia.machine.transmissions import TRANSMISSIONS
 
 PAGE = Path(__file__).parents[3] / "docs" / "reference" / "machine-file.md"
@@ -33,6 +34,10 @@ TABLES = {
     f"transmission, kind {kind}": cls for kind, cls in TRANSMISSIONS.items()
 } | {
     f"driver, kind {kind}": cls for kind, cls in DRIVERS.items()
+} | {"amplifier": ServoAmplifier, "train": DriveTrain, "notch": NotchData} | {
+    f"loop, kind {kind}": cls for kind, cls in LOOPS.items()
+} | {
+    f"catalogue, kind {kind}": cls for kind, cls in SERVO_MOTORS.items()
 }  # fmt: skip
 PLAIN = {Ratio: "exact number", Whole: "whole number", Number: "number", Flag: "true or false", Text: "text",
          CurveOfAcceleration: "pairs of velocity and acceleration"}  # fmt: skip
