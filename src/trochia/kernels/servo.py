@@ -73,6 +73,12 @@ class ServoKernel:
         """Change the loops from here on; what they remember stays."""
         self._loop = ffi.new("trochia_loop *", dict(loop))
 
+    def forget(self) -> None:
+        """Let the loops begin anew; motor and load stay as they move."""
+        fresh = ffi.new("trochia_servo_state *")
+        fresh.plant = self._state.plant
+        self._state = fresh
+
     def run(
         self,
         wanted: NDArray[np.float64],

@@ -1,0 +1,1 @@
+"""From a model to gains: rules, pole placement, loop shaping, search; and what the gains are worth."""
