@@ -16,7 +16,9 @@ if TYPE_CHECKING:
 
     from trochia.controller.runtime import Runtime
     from trochia.machine.machine import Machine
-    from trochia.server import Desk, Doors, Served
+    from trochia.server.desk import Desk
+    from trochia.server.doors import Doors
+    from trochia.server.listen import Served
 
 LOOPBACK = ("127.0.0.1", "::1", "localhost")
 file = click.Path(dir_okay=False, path_type=Path)
@@ -64,7 +66,10 @@ def command(
     if (certificate is None) != (key is None):
         raise click.UsageError("--certificate and --key go together")
     from trochia.machine.load import load  # noqa: PLC0415 - `trochia --help` must stay light
-    from trochia.server import Desk, Doors, Served, Users, listen  # noqa: PLC0415
+    from trochia.server.desk import Desk  # noqa: PLC0415
+    from trochia.server.doors import Doors  # noqa: PLC0415
+    from trochia.server.listen import Served, listen  # noqa: PLC0415
+    from trochia.server.users import Users  # noqa: PLC0415
 
     del backend  # there is one so far
     users = Users(users_file or settings_folder() / "users.json")
@@ -103,7 +108,7 @@ def _address(doors: Doors, host: str) -> str:
 
 def _serve(runtime: Runtime, desk: Desk, served: Served, address: str) -> None:
     """Serve until told to stop, then bring the machine to rest."""
-    from trochia.server import bring_to_rest  # noqa: PLC0415
+    from trochia.server.rest import bring_to_rest  # noqa: PLC0415
 
     def terminated(_signal: int, _frame: object) -> None:
         raise KeyboardInterrupt

@@ -5,7 +5,7 @@ from __future__ import annotations
 import socket
 import time
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import httpx
@@ -20,7 +20,11 @@ from trochia.client import Client
 from trochia.controller.journal import entries
 from trochia.controller.runtime import Runtime
 from trochia.messages import decode_told
-from trochia.server import Desk, Doors, Served, Users, bring_to_rest, listen
+from trochia.server.desk import Desk
+from trochia.server.doors import Doors
+from trochia.server.listen import Served, listen
+from trochia.server.rest import bring_to_rest
+from trochia.server.users import Users
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -38,6 +42,7 @@ class Place:
     desk: Desk
     served: Served
     folder: Path
+    cookies: dict[str, str] = field(default_factory=dict)
 
     @property
     def url(self) -> str:
@@ -54,11 +59,18 @@ class Place:
                 assert answer.status_code == 200, answer.text
             yield made
 
-    def socket(self, user: str | None = "ada", *, origin: str | None = None, host: str | None = None):
-        headers = {}
-        if user is not None:
+    def cookie(self, user: str) -> str:
+        """Return the cookie of a login, one for all sockets of a user."""
+        if user not in self.cookies:
             with self.http(user) as http:
-                headers["Cookie"] = "; ".join(f"{name}={value}" for name, value in http.cookies.items())
+                self.cookies[user] = "; ".join(f"{name}={value}" for name, value in http.cookies.items())
+        return self.cookies[user]
+
+    def socket(self, user: str | None = "ada", *, origin: str | None = None, host: str | None = None,
+               cookie: str | None = None):  # fmt: skip
+        headers = {} if cookie is None else {"Cookie": cookie}
+        if user is not None:
+            headers["Cookie"] = self.cookie(user)
         if host is not None:
             headers["Host"] = host
         line = socket.create_connection(("127.0.0.1", self.served.port))
@@ -114,31 +126,32 @@ def hear():
     return told
 
 
-@pytest.fixture
-def serve(tmp_path):
+def _open(name: str, folder: Path) -> Place:
     """Serve a machine of the wheel."""
-    places = []
-
-    def start(name: str = "reference-mill") -> Place:
-        machine = trochia.load(name)
-        users = Users(tmp_path / "users.json", cost=CHEAP)
-        for user, role in ROLES.items():
-            users.put(user, role, PASSWORD[user])
-        runtime = Runtime(LiveTwin(machine, switches=switches_of(machine)), journal=tmp_path / "journal",
-                          now=time.monotonic())  # fmt: skip
-        listening = listen("127.0.0.1", 0)
-        desk = Desk(runtime, users, Doors.of(listening.getsockname()[1]), log=tmp_path / "journal" / "access")
-        runtime.start()
-        served = Served(desk, listening)
-        served.start()
-        places.append(Place(runtime, desk, served, tmp_path))
-        return places[-1]
-
-    yield start
-    for place in places:
-        place.close()
+    machine = trochia.load(name)
+    users = Users(folder / "users.json", cost=CHEAP)
+    for user, role in ROLES.items():
+        users.put(user, role, PASSWORD[user])
+    runtime = Runtime(LiveTwin(machine, switches=switches_of(machine)), journal=folder / "journal",
+                      now=time.monotonic())  # fmt: skip
+    listening = listen("127.0.0.1", 0)
+    desk = Desk(runtime, users, Doors.of(listening.getsockname()[1]), log=folder / "journal" / "access")
+    runtime.start()
+    served = Served(desk, listening)
+    served.start()
+    return Place(runtime, desk, served, folder)
 
 
 @pytest.fixture
-def place(serve) -> Place:
-    return serve()
+def place(tmp_path):
+    made = _open("reference-mill", tmp_path)
+    yield made
+    made.close()
+
+
+@pytest.fixture(scope="module")
+def served_once(tmp_path_factory):
+    """One machine for many examples."""
+    made = _open("reference-mill", tmp_path_factory.mktemp("served"))
+    yield made
+    made.close()
