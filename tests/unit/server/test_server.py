@@ -95,7 +95,7 @@ def test_stop_is_for_everybody_who_is_in(place, user: str) -> None:
         ada.command(JogBy(way={"X": 50.0}, speed=5.0))
         ada.wait_until("jogging", timeout=20.0)
         other.stop()
-        assert ada.wait_until("estop", timeout=20.0).axes[0].velocity == 0.0
+        ada.wait_until(lambda status: status.state == "estop" and status.axes[0].velocity == 0.0, timeout=20.0)
     assert any(entry.get("stop") and entry["user"] == user for entry in place.log())
 
 
