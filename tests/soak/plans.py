@@ -1,10 +1,11 @@
-"""Random programs planned with limited jerk: no limit exceeded anywhere, no jump, hardly ever slower than stopping.
+"""Random programs planned: no limit exceeded anywhere, no jump, inside P both ways, hardly ever slower than stopping.
 
     python tests/soak/plans.py --count 100000 --seed 1
 
 Case N is made from seed N alone: machines of 2 to 6 axes, CoreXY and capped ones among them; lines, arcs, helices,
 spirals, splines, chains of chords, and all of them mixed; every path mode.  Each phase is looked at in 11 places, by
-the phases' own arithmetic.  Exit code 1: a case failed; each is told with its seed.
+the phases' own arithmetic, with limited jerk and as a trapezoid.  Exit code 1: a case failed; each is told with its
+seed.  Now and then the seed to go on with is told, and the greatest parts of limits and of P that were used.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import dataclasses
 import math
 from typing import TYPE_CHECKING, Any
 
+import deviation
 import numpy as np
 
 from trochia.kernels import path as kernel
@@ -33,6 +35,8 @@ if TYPE_CHECKING:
 
 POINTS = 11
 OVER = 1e-9
+TOLD = 1000  #: cases between two reports
+MEASURED = 50  #: one in so many has its deviation measured, which takes eight times the rest
 SLOWER = 1.5  #: times a plan may take of one that stops at every corner (1.34 seen; the goal is 1)
 PLANES = {Plane.XY: (0, 1), Plane.YZ: (1, 2), Plane.ZX: (2, 0)}
 
@@ -155,8 +159,8 @@ def inside(phases: np.ndarray) -> np.ndarray:
     return states
 
 
-def faults(trajectory: Trajectory) -> Iterator[str]:
-    """Yield what is wrong with a trajectory."""
+def faults(trajectory: Trajectory, worst: list[float]) -> Iterator[str]:
+    """Yield what is wrong with a trajectory; raises the greatest parts of limits that are used, by derivative."""
     path, limits, linear = trajectory.path, trajectory.limits, slice(0, trajectory.limits.linear)
     phases = np.concatenate(list(trajectory.blocks()))
     if not (phases["duration"] > 0).all():
@@ -164,14 +168,16 @@ def faults(trajectory: Trajectory) -> Iterator[str]:
     states = inside(phases)
     rows = (limits.velocity, limits.acceleration, limits.jerk)
     caps = (limits.path_velocity, limits.path_acceleration, limits.path_jerk)
-    for order, close in enumerate([1e-9, 2e-6, 1e-5, 0.0]):
+    orders = 4 if trajectory.profile == "s-curve" else 3
+    for order, close in enumerate([1e-9, 2e-6, 1e-5, 0.0][:orders]):
         asked = kernel.sample(path.segments, path.pool, len(path.axes), states, order)
         if order:
             over = max((np.abs(asked @ limits.matrix.T) / rows[order - 1]).max(),
                        (np.linalg.norm(asked[:, linear], axis=1) / caps[order - 1]).max())  # fmt: skip
+            worst[order] = max(worst[order], over)
             if not over <= 1 + OVER:
                 yield f"derivative {order} is {over!r} of its limit"
-        if order < len(rows):
+        if order < orders - 1:
             jump = np.abs(asked[POINTS - 1 : -1 : POINTS] - asked[POINTS::POINTS]).max(initial=0)
             if not jump <= close * (np.abs(asked).max(initial=1.0) if order else 1.0):
                 yield f"derivative {order} jumps by {jump!r}"
@@ -181,17 +187,26 @@ def faults(trajectory: Trajectory) -> Iterator[str]:
                 yield "a feed is exceeded"
 
 
-def case(seed: int, among: list[Machine]) -> list[str]:
-    """Return what is wrong with the plan of a seed, and with its time against stopping at every corner."""
+def case(seed: int, among: list[Machine], worst: list[float]) -> list[str]:
+    """Return what is wrong with the plans of a seed, and with their time against stopping at every corner."""
     machine = among[seed % len(among)]
     program = program_of(seed, machine)
-    path = build(program, machine, continuity=2)
+    path, programmed = build(program, machine, continuity=2), build(program, machine, blend=False)
     if not len(path):
         return []
     trajectory = plan(path, machine, program=program, profile="s-curve")
-    exact = plan(build(program, machine, blend=False), machine, program=program, profile="s-curve")
+    exact = plan(programmed, machine, program=program, profile="s-curve")
+    blended = plan(build(program, machine), machine, program=program, profile="trapezoid")
     slower = trajectory.duration > exact.duration * SLOWER + 1e-9
-    return [*faults(trajectory), *([f"{trajectory.duration!r} s, {exact.duration!r} s with stops"] if slower else [])]
+    looked = seed // len(among) % MEASURED == 0
+    away = deviation.used(program, machine, path if seed % 2 else blended.path, programmed) if looked else 0.0
+    worst[0] = max(worst[0], away)
+    return [
+        *faults(trajectory, worst),
+        *(f"trapezoid: {fault}" for fault in faults(blended, worst)),
+        *([f"{trajectory.duration!r} s, {exact.duration!r} s with stops"] if slower else []),
+        *([f"{away!r} of P is used"] if not away <= 1 + OVER else []),
+    ]
 
 
 def main() -> None:
@@ -200,12 +215,15 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=100_000)
     parser.add_argument("--seed", type=int, default=1)
     asked = parser.parse_args()
-    among, failed = machines(), 0
-    for seed in range(asked.seed, asked.seed + asked.count):
-        found = case(seed, among)
+    among, failed, worst, end = machines(), 0, [0.0] * 4, asked.seed + asked.count
+    for seed in range(asked.seed, end):
+        found = case(seed, among, worst)
         failed += bool(found)
         if found:
             print(f"seed {seed}: {'; '.join(found)}", flush=True)
+        if (seed + 1 - asked.seed) % TOLD == 0 or seed + 1 == end:
+            parts = ", ".join(f"{part - 1:+.2e}" for part in worst)
+            print(f"go on with seed {seed + 1}; {failed} failed; worst of P, v, a, j over 1: {parts}", flush=True)
     print(f"{asked.count} programs from seed {asked.seed} on, {failed} failed")
     raise SystemExit(failed > 0)
 
