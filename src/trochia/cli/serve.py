@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -114,6 +115,7 @@ def _serve(runtime: Runtime, desk: Desk, served: Served, address: str) -> None:
         raise KeyboardInterrupt
 
     signal.signal(signal.SIGTERM, terminated)
+    sys.setswitchinterval(0.001)  # else whoever computes keeps the controller waiting for 5 ms, a whole turn
     runtime.start()
     click.echo(f"{runtime.backend.machine.name} at {address} (Ctrl-C ends)")
     try:

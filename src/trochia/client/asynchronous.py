@@ -54,12 +54,15 @@ class AsyncClient:
         Who one is: ``session.control`` says whether one may move the machine.
     frames
         Frames of samples that have arrived and nobody has taken, at most :data:`FRAMES`.
+    received
+        How many statuses have arrived.
     """
 
     def __init__(self, socket: ClientConnection) -> None:
         self.status: Status | None = None
         self.session: SessionStatus | None = None
         self.frames: deque[Frame] = deque(maxlen=FRAMES)
+        self.received = 0
         self._socket = socket
         self._numbers = itertools.count(1)
         self._answers: dict[int, asyncio.Future[Ack]] = {}
@@ -268,6 +271,7 @@ class AsyncClient:
                 answer.set_result(told.ack)
         if told.status is not None:
             self.status = told.status
+            self.received += 1
             self._unsaid += 1
             if self._unsaid >= SEEN_EVERY:
                 self._unsaid = 0
