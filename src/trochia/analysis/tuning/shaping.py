@@ -43,10 +43,11 @@ STEP_TIME = 1.0  #: of a step on the twin [s]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Shaped:
-    """A loop and what it does on the model."""
+    """A loop, what it does on the model, and its notch: frequency [Hz], width, depth."""
 
     loop: Loop
     step: StepMetrics
+    notch: tuple[float, float, float] | None = None
 
 
 def peak_of(plant: ServoPlant) -> float | None:
@@ -107,23 +108,24 @@ def shape(
     frequency = grid(plant, period)
     body = plant_response(plant, frequency, period)
     found: list[Shaped] = []
-    for filters in _filters(plant, period):
+    for shaped in _notches(plant, period):
+        filters = () if shaped is None else (notch(shaped[0], period, width=shaped[1], depth=shaped[2]),)
         w = _fastest(plant, (period, frequency, body), filters, most_ms)
         if w is not None:
             loop = cascade(plant, w, period, filters=filters, limit=limit)
-            found.append(Shaped(loop=loop, step=step_on_twin(plant, loop, size)))
+            found.append(Shaped(loop=loop, step=step_on_twin(plant, loop, size), notch=shaped))
     if not found:
         raise LimitError(f"no cascade keeps Ms below {most_ms:g} on this axis",
                          hint="Allow more, sample faster, or stiffen the drive train.")  # fmt: skip
     return min(found, key=lambda one: (one.step.settling, one.step.overshoot))
 
 
-def _filters(plant: ServoPlant, period: float) -> list[tuple[Biquad, ...]]:
-    """Return the sets of filters to try."""
+def _notches(plant: ServoPlant, period: float) -> list[tuple[float, float, float] | None]:
+    """Return the notches to try; None: none."""
     peak = peak_of(plant)
     if peak is None or peak * period > 0.45:
-        return [()]
-    return [(), *((notch(peak, period, width=width, depth=depth),) for width, depth in _NOTCHES)]
+        return [None]
+    return [None, *((peak, width, depth) for width, depth in _NOTCHES)]
 
 
 def _fastest(
