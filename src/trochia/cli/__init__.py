@@ -21,6 +21,7 @@ COMMANDS = {
     "run": "Run a program on a machine, under the live controller.",
     "serve": "Serve a machine over HTTP and WebSocket, with a page that shows it and stops it.",
     "users": "Who may log in to a served machine.",
+    "gateway": "Let senders of another protocol drive a machine: GRBL 1.1.",
     "interpolate": "Compare the classic interpolators on a line or an arc.",
     "profile": "A stepper's velocity profile, step by step, and whether it will do.",
     "sweep": "A stepper's torque-speed curve behind its driver, with a program's operating points.",

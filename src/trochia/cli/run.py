@@ -22,14 +22,16 @@ LOOK = 0.1  #: between looks at the status [s]
 
 @click.command()
 @options.common
-@click.option("--backend", type=click.Choice(["twin"]), default="twin", show_default=True, help="Who moves.")
+@click.option("--backend", type=click.Choice(["twin", "grbl"]), default="twin", show_default=True, help="Who moves.")
+@click.option("--port", metavar="DEVICE", help="Serial port of a board (--backend grbl).")
+@click.option("--baud", type=click.IntRange(min=1200), default=115200, show_default=True, help="Its baud rate.")
 @click.option("--virtual", is_flag=True, help="Run by a virtual clock, as fast as the computer can.")
 @click.option("-y", "--yes", is_flag=True, help="Home, start and go on at stops without asking.")
 @click.option("--journal", type=click.Path(file_okay=False, path_type=Path), metavar="DIR",
               help="Folder of the machine's journal; without it nothing is kept.")  # fmt: skip
 def command(
     *, program: str, machine_name: str, place: dict[str, float], profile: str | None, as_json: bool, reading: Reading,
-    backend: str, virtual: bool, yes: bool, journal: Path | None,
+    backend: str, port: str | None, baud: int, virtual: bool, yes: bool, journal: Path | None,
 ) -> None:  # fmt: skip
     """Run a program: checked first, homed if need be, then under the controller, to its end.
 
@@ -37,6 +39,15 @@ def command(
 
     Example: trochia run programs/contour.ngc -m xy-table --virtual -y
     """
+    if (backend == "grbl") != (port is not None):
+        raise click.UsageError("--backend grbl and --port DEVICE go together")
+    if port is not None:
+        if virtual or journal is not None:
+            raise click.UsageError("a board has its own clock and no journal: leave --virtual and --journal out")
+        from trochia.cli import run_board  # noqa: PLC0415 - only where there is one
+
+        run_board.run(program, machine_name, place, profile, reading=reading, port=port, baud=baud, yes=yes,
+                      as_json=as_json)  # fmt: skip
     from trochia.cli.job import judge  # noqa: PLC0415 - `trochia --help` must stay light
     from trochia.cli.tables import show_verdict  # noqa: PLC0415
 
@@ -52,7 +63,6 @@ def command(
     from trochia.controller.runtime import Runtime  # noqa: PLC0415
     from trochia.program import WorkState  # noqa: PLC0415
 
-    del backend  # there is one so far
     twin = LiveTwin(job.machine, switches=switches_of(job.machine))
     clock = 0.0 if virtual else time.monotonic()
     runtime = Runtime(twin, journal=journal, work=WorkState().placed(**place), now=clock)

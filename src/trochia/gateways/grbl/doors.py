@@ -62,19 +62,12 @@ class TcpDoor:
 
     def read(self) -> bytes | None:
         """Return what the sender has said; let one in where there is none."""
+        data = self._heard()
+        if self._sender is not None and data is None:
+            self._leave()  # before another is let in: that it is gone must be seen
+            return None
         self._let_in()
-        if self._sender is None:
-            return None
-        try:
-            data = self._sender.recv(4096)
-        except BlockingIOError:
-            return b""
-        except OSError:
-            data = b""
-        if not data:
-            self._leave()
-            return None
-        return data
+        return b"" if data is None and self._sender is not None else data
 
     def write(self, data: bytes) -> None:
         """Tell the sender; one that does not listen is let go."""
@@ -89,6 +82,17 @@ class TcpDoor:
         """Close the port."""
         self._leave()
         self._listener.close()
+
+    def _heard(self) -> bytes | None:
+        """Return what the sender has said; None where there is none, or no more."""
+        if self._sender is None:
+            return None
+        try:
+            return self._sender.recv(4096) or None
+        except BlockingIOError:
+            return b""
+        except OSError:
+            return None
 
     def _let_in(self) -> None:
         try:
