@@ -89,6 +89,8 @@ soak: setup-test
 	$(BIN)/python -m pytest -q --hypothesis-profile=soak tests/properties tests/oracle
 	$(BIN)/python tests/soak/fuzz_gcode.py --count $(SOAK) --seed $(SOAK_SEED) --jobs $(JOBS)
 	$(BIN)/python tests/soak/plans.py --count $(PLANS) --seed $(SOAK_SEED)
+	$(BIN)/python tests/soak/holds.py --count 10000 --seed $(SOAK_SEED)
+	$(BIN)/python tests/soak/kills.py --count 200 --seed $(SOAK_SEED)
 	$(BIN)/python tests/soak/compare_gcode.py --count 10000 --seed $(SOAK_SEED) --jobs $(JOBS)
 
 oracle: setup-test

@@ -77,7 +77,7 @@ TROUBLES: dict[Cause, Row] = {
         trusted=False, dark=True,
     ),
     Cause.POWER: Row(
-        "the controller was not closed down: line {line} was executed last",
+        "the controller was not closed down: line {text} was executed last",
         "Home the machine; then run-from offers to go on from there.", trusted=False,
     ),
 }  # fmt: skip

@@ -14,14 +14,15 @@ from trochia.backends.live import Orders, Trouble
 from trochia.controller.alarms import TROUBLES, Alarms
 from trochia.controller.doings import OUTPUTS_OFF
 from trochia.controller.handlers import HANDLERS
+from trochia.controller.interrupted import Interrupted, work_entry
 from trochia.controller.job import Job
 from trochia.controller.jog import Jog
-from trochia.controller.readying import Readier
+from trochia.controller.readying import MDI, Readier
 from trochia.controller.states import MOVING, TABLE, Event, State, legal
 from trochia.controller.status import axes_of, axis_statuses, io_of, position_of, unit_of
 from trochia.errors import TrochiaError
 from trochia.messages import Ack, Cause, OverrideStatus, ProgramStatus, Request, Status, SwitchStatus
-from trochia.program import Pause, ToolChange, WorkState
+from trochia.program import AXES, Pause, ToolChange, WorkState
 
 if TYPE_CHECKING:
     from trochia.backends.live import Report
@@ -66,6 +67,7 @@ class Controller:
         self.loaded: tuple[str, str] | None = None  # name and text of the program
         self.preview: Ready | None = None  # the program as it was planned when it was loaded
         self.running: Ready | None = None
+        self.interrupted: Interrupted | None = None  # the job before, if it did not come to its end
         self.activity: Activity | None = None
         self.request: Request | None = None
         self.armed = machine.beam is None
@@ -91,7 +93,9 @@ class Controller:
             self.note("refused", command=kind, reason=str(error))
             return Ack(id=command.id, ok=False, reason=str(error), legal=legal(self.state))
         self.note("command", command=kind)
-        self.enter(TABLE[self.state, kind])
+        target = TABLE[self.state, kind]
+        if target not in MOVING or self.activity is not None:  # else it was only asked what it would do
+            self.enter(target)
         return Ack(id=command.id, ok=True, told=told)
 
     def step(self, now: float, report: Report) -> list[Orders]:
@@ -164,13 +168,11 @@ class Controller:
             return
         self.pending.append(Orders(stop=row.at_once or row.dark, lit=False, enable=False if row.dark else None,
                                    outputs=OUTPUTS_OFF))  # fmt: skip
-        if row.at_once or row.dark:
-            self.activity = None
-        elif self.activity is not None:
-            self._brake(self.activity)
-        if self.running is not None:
-            self.note("end", whole=False, line=self.report.line)
-        self.running = self.request = None
+        activity = self.activity
+        self.end(whole=False)
+        if activity is not None and not (row.at_once or row.dark):
+            self.activity = activity
+            self._brake(activity)
         if not row.trusted:
             self.distrust(trouble.joint)
         if (self.state, Event.FAULT) in TABLE:
@@ -196,6 +198,21 @@ class Controller:
         """Be busy with something from now on."""
         self.activity = activity
         self._moved = False
+
+    def end(self, *, whole: bool) -> None:
+        """Be no longer busy; a program that has not come to its end can be gone on with."""
+        made, job = self.running, self.activity
+        if made is not None and isinstance(job, Job):
+            point = job.point(self.report)
+            self.note("end", name=made.name, whole=whole, line=self.report.line, **point)
+            if made.name != MDI and not whole:
+                start = dict(zip(AXES, made.start, strict=True))
+                self.interrupted = Interrupted(
+                    name=made.name, text=made.text, start=start, work=work_entry(made.found), line=self.report.line,
+                    block_delete=self.switches.block_delete, position=self.position(), closed=True,
+                    move=int(point["move"]), distance=point["distance"], done_s=point["done_s"],
+                )  # fmt: skip
+        self.activity = self.running = self.request = None
 
     # -- inside
 
@@ -258,19 +275,18 @@ class Controller:
     def _end(self) -> None:
         """Be no longer busy: keep what a program leaves set up."""
         whole = self.state in {State.RUNNING, State.STEPPING, State.RESUMING}
-        if isinstance(self.activity, Job):
-            if whole and self.running is not None:
-                self.work = self.running.work
-            else:
-                self.pending.append(Orders(lit=False, outputs=OUTPUTS_OFF))
-            self.note("end", whole=whole, line=self.report.line)
-        self.activity = self.running = self.request = None
+        if isinstance(self.activity, Job) and not whole:
+            self.pending.append(Orders(lit=False, outputs=OUTPUTS_OFF))
+        elif self.running is not None:
+            self.work = self.running.work
+        self.end(whole=whole)
 
     def _program(self) -> ProgramStatus | None:
         if self.running is not None and isinstance(self.activity, Job):
             line, done = self.activity.place(self.report)
             whole = self.running.plan.time_s
             return ProgramStatus(name=self.running.name, lines=self.running.plan.program.lines, line=line,
+                                 distance=self.activity.point(self.report)["distance"],
                                  time_s=whole, done_s=max(done, 0.0), remaining_s=max(whole - done, 0.0))  # fmt: skip
         if self.loaded is None:
             return None
@@ -283,6 +299,6 @@ class Controller:
             return
         self._pointed, self._moved = now, moving
         data: dict[str, object] = {"line": self.report.line, "position": self.position()}
-        if isinstance(self.activity, Job):
-            data["done_s"] = self.activity.place(self.report)[1]
+        if isinstance(self.activity, Job) and self.running is not None and self.running.name != MDI:
+            data |= self.activity.point(self.report)
         self.note("point", **data)

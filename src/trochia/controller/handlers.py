@@ -13,16 +13,15 @@ import msgspec
 from trochia.backends.live import Orders, Trouble
 from trochia.controller.doings import OUTPUTS_OFF
 from trochia.controller.homing import Home as Homing
-from trochia.controller.job import Job, Options
+from trochia.controller.job import Job
 from trochia.controller.jog import Jog
+from trochia.controller.readying import MDI
+from trochia.controller.starting import LEAST, begin, check_overrides, known, run_from, start
 from trochia.controller.states import State
 from trochia.errors import LimitError, LocalProtocolError, OutOfTravelError
 from trochia.messages import Cause
 from trochia.messages import command as c
 from trochia.program import AXES
-
-LEAST = 0.01  #: override of feed or rapid below which motion is held
-STAYS = 1e-6  #: extent of an axis that does not move [mm or degree]
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -49,7 +48,7 @@ def estop(it: Controller, _command: c.EmergencyStop, _now: float) -> str:
     """Stop everything now."""
     it.fault(Trouble(cause=Cause.ESTOP))
     it.pending.append(Orders(stop=True, enable=False, lit=False))
-    it.activity = it.running = it.request = None
+    it.end(whole=False)
     it.distrust()
     return ""
 
@@ -69,7 +68,7 @@ def acknowledge(it: Controller, _command: c.Acknowledge, _now: float) -> str:
 def load(it: Controller, command: c.Load, _now: float) -> str:
     """Make a program the one to run, once it has been read and planned from here."""
     made = it.readier.ready(command.text, command.name, work=it.work, at=it.position(),
-                            block_delete=it.switches.block_delete, bounded=_known(it))  # fmt: skip
+                            block_delete=it.switches.block_delete, bounded=known(it))  # fmt: skip
     it.loaded, it.preview = (command.name, command.text), made
     return f"{made.plan.program.lines} lines, {made.plan.time_s:.1f} s"
 
@@ -82,7 +81,7 @@ def unload(it: Controller, _command: c.Unload, _now: float) -> str:
 
 def run(it: Controller, _command: c.Run, _now: float) -> str:
     """Run the program from its start."""
-    return _start(it, block_by_block=it.switches.single_block)
+    return start(it, block_by_block=it.switches.single_block)
 
 
 def step(it: Controller, _command: c.Step, _now: float) -> str:
@@ -93,18 +92,13 @@ def step(it: Controller, _command: c.Step, _now: float) -> str:
         told = resume(it, c.Resume(), 0.0)
         it.activity.by_block = True
         return told
-    return _start(it, block_by_block=True)
-
-
-def run_from(_it: Controller, _command: c.RunFrom, _now: float) -> str:
-    """Run from a line."""
-    raise LocalProtocolError("this controller cannot begin inside a program yet", hint="Run it from its start.")
+    return start(it, block_by_block=True)
 
 
 def mdi(it: Controller, command: c.Mdi, _now: float) -> str:
     """Run a few lines."""
     text = command.text if command.text.endswith("\n") else command.text + "\n"
-    return _begin(it, text + "M2\n", "<mdi>", block_by_block=False)
+    return begin(it, text + "M2\n", MDI, block_by_block=False)
 
 
 def hold(it: Controller, _command: c.Hold, _now: float) -> str:
@@ -118,8 +112,7 @@ def abort(it: Controller, _command: c.Abort, _now: float) -> str:
     """Brake, and give up."""
     if it.state is State.HELD:
         it.pending.append(Orders(lit=False, outputs=OUTPUTS_OFF))
-        it.note("end", whole=False, line=it.report.line)
-        it.activity = it.running = it.request = None
+        it.end(whole=False)
     elif it.activity is not None and it.state is not State.HOLDING:
         it.activity.hold(it.report, it.latency)
     return ""
@@ -127,7 +120,7 @@ def abort(it: Controller, _command: c.Abort, _now: float) -> str:
 
 def resume(it: Controller, _command: c.Resume, _now: float) -> str:
     """Go on."""
-    _check_overrides(it)
+    check_overrides(it)
     if isinstance(it.activity, Job):
         it.activity.by_block = it.switches.single_block
         it.back = it.activity.resume(it.report, feed=it.overrides.feed, rapid=it.overrides.rapid)
@@ -251,55 +244,12 @@ def arm_beam(it: Controller, command: c.ArmBeam, _now: float) -> str:
     return ""
 
 
-def _known(it: Controller) -> bool:
-    return all(it.trusted.values())
-
-
 def _axis(it: Controller, name: str) -> Axis:
     for axis in it.machine.axes:
         if axis.name == name:
             return axis
     raise LocalProtocolError(f"this machine has no axis {name}",
                              hint="It has " + " ".join(axis.name for axis in it.machine.axes))  # fmt: skip
-
-
-def _check_overrides(it: Controller) -> None:
-    if min(it.overrides.feed, it.overrides.rapid) < LEAST:
-        raise LocalProtocolError("an override is 0: nothing would move", hint="Raise it to 1 % at least, then go on.")
-
-
-def _start(it: Controller, *, block_by_block: bool) -> str:
-    if it.loaded is None:
-        raise LocalProtocolError("no program is loaded", hint="Load one first.")
-    lost = [name for name, known in it.trusted.items() if not known]
-    if lost:
-        raise LocalProtocolError(f"nobody knows where {' '.join(lost)} stands", hint="Home first.")
-    name, text = it.loaded
-    return _begin(it, text, name, block_by_block=block_by_block)
-
-
-def _begin(it: Controller, text: str, name: str, *, block_by_block: bool) -> str:
-    _check_overrides(it)
-    made = it.readier.ready(
-        text, name, work=it.work, at=it.position(), block_delete=it.switches.block_delete, exact=block_by_block,
-        bounded=_known(it),
-    )  # fmt: skip
-    for axis in it.machine.axes:
-        low, high = made.plan.extents.get(axis.name, (0.0, 0.0))
-        if not it.trusted[axis.name] and high - low > STAYS:
-            raise LocalProtocolError(f"nobody knows where {axis.name} stands", hint="Home it first, or jog.")
-        if it.trusted[axis.name] and not _known(it) and not axis.minimum - STAYS <= low <= high <= axis.maximum + STAYS:
-            raise OutOfTravelError(f"{axis.name} would go from {low:g} to {high:g} {axis.unit}, its travel is "
-                                   f"{axis.minimum:g} to {axis.maximum:g}")  # fmt: skip
-    options = Options(
-        optional_stop=it.switches.optional_stop, block_by_block=block_by_block,
-        dark=it.switches.dry_run, feed=it.overrides.feed, rapid=it.overrides.rapid, spindle=it.overrides.spindle,
-    )  # fmt: skip
-    it.begin(Job(made.plan, it.machine, options, origin=it.report.executed, ahead=it.ahead))
-    it.running = made
-    it.pending.append(Orders(lit=it.armed and not it.switches.dry_run, watch=()))
-    it.note("begin", name=name, seconds=made.plan.time_s)
-    return f"{made.plan.time_s:.1f} s"
 
 
 def _jog(

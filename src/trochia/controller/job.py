@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
     from trochia.analysis.plan import Plan
     from trochia.backends.live import Report
+    from trochia.controller.rerun import Entry
     from trochia.machine.machine import Machine
     from trochia.planner.live import Portion
 
@@ -59,6 +60,8 @@ class Job:
         The action the program waits at, or None.
     by_block
         Whether it rests after each block.
+    entry
+        Where in the program it begins, if not at its start.
     """
 
     def __init__(self, plan: Plan, machine: Machine, options: Options, *, origin: float, ahead: float) -> None:
@@ -66,6 +69,7 @@ class Job:
         self.options = options
         self.waiting: Action | None = None
         self.by_block = options.block_by_block
+        self.entry: Entry | None = None
         self.doings = Doings(plan.program, machine, dark=options.dark, spindle=options.spindle)
         self._machine = machine
         live = LivePlan.of(plan.trajectory, machine)
@@ -137,6 +141,16 @@ class Job:
     def place(self, report: Report) -> tuple[int, float]:
         """Return the line executed and how far along the program's time [s]."""
         return report.line, self.feeder.plan_time(report.executed)
+
+    def point(self, report: Report) -> dict[str, float]:
+        """Return what the journal is told of the place executed: move of the program, way along its line [mm]."""
+        t = self.feeder.plan_time(report.executed)
+        row, distance = self.feeder.live.along(max(t, 0.0))
+        move = int(self._moves[min(row, len(self._moves) - 1)]) if len(self._moves) else 0
+        if self.entry is not None:
+            distance = distance if move >= self.entry.way else 0.0
+            move = self.entry.original(move)
+        return {"move": move, "distance": round(distance, 6), "done_s": t}
 
     # -- inside
 

@@ -17,18 +17,24 @@ from trochia.program import AXES, PathMode, Program, WorkState
 if TYPE_CHECKING:
     from trochia.machine.machine import Machine
 
+MDI = "<mdi>"  #: name of lines that are no program
 EXACT = PathMode.EXACT_STOP
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ready:
-    """A plan, what it was made from, and what it leaves behind."""
+    """A plan, what it was made from, and what it leaves behind.
+
+    ``start`` is where the machine stood (9,), ``found`` what was set up, ``work`` what the text leaves set up.
+    """
 
     plan: Plan
     text: str
     name: str
     key: tuple[object, ...]
     work: WorkState
+    found: WorkState
+    start: tuple[float, ...]
 
 
 class Readier:
@@ -67,8 +73,23 @@ class Readier:
         error = travel_error(plan) if bounded else None
         if error is not None:
             raise error
-        self._last = Ready(plan=plan, text=text, name=name, key=key, work=left[-1] if left else work)
+        self._last = Ready(plan=plan, text=text, name=name, key=key, work=left[-1] if left else work,
+                           found=work, start=start)  # fmt: skip
         return self._last
+
+    def inside(self, made: Ready, program: Program, *, exact: bool) -> Ready:
+        """Return the plan of a program that begins inside that of another (:mod:`trochia.controller.rerun`).
+
+        Raises
+        ------
+        PlanningError
+            As :meth:`ready`.
+        """
+        plan = make(_stopping(program) if exact else program, self._machine)
+        error = travel_error(plan)
+        if error is not None:
+            raise error
+        return replace(made, plan=plan)
 
 
 def _stopping(program: Program) -> Program:

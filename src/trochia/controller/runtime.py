@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 
 from trochia.backends.live import Orders, Trouble
 from trochia.controller.controller import Controller
+from trochia.controller.interrupted import interrupted, keep
 from trochia.controller.journal import Journal
 from trochia.errors import LinkError
 from trochia.messages import Cause
@@ -65,7 +66,7 @@ class Runtime:
         self.controller = Controller(backend.machine, backend.open(now), latency=backend.latency,
                                      ahead=backend.ahead, work=work)  # fmt: skip
         self.load = Load()
-        self._journal = None if journal is None else Journal(journal)
+        self._open(journal)
         self._commands: SimpleQueue[tuple[AnyCommand, Future[Ack]]] = SimpleQueue()
         self.watchers: list[Callable[[Status, Report], None]] = []
         self._status = self.controller.status(now)
@@ -145,6 +146,18 @@ class Runtime:
 
     # -- inside
 
+    def _open(self, folder: Path | None) -> None:
+        """Open the journal; a job that it has no end of is offered to be gone on with."""
+        self._journal = None
+        if folder is None:
+            return
+        job = interrupted(folder) if folder.exists() else None
+        self._journal = Journal(folder)
+        self.controller.interrupted = job
+        if job is not None and not job.closed:
+            text = f"{job.line}, {job.distance:.3f} mm along it"
+            self.controller.fault(Trouble(cause=Cause.POWER), text)
+
     def _order(self, orders: list[Orders], now: float) -> None:
         refused = False
         for order in orders:
@@ -157,8 +170,11 @@ class Runtime:
                 self.controller.fault(Trouble(cause=Cause.LINK), str(error))
 
     def _write(self, now: float, kind: str, data: dict[str, object]) -> None:
-        if self._journal is not None:
-            self._journal.write(kind, now, **data)
+        if self._journal is None:
+            return
+        if kind == "job":
+            data["program"] = keep(self._journal.folder, str(data["program"]))
+        self._journal.write(kind, now, **data)
 
     def _safe_turn(self, now: float) -> None:
         """Take a turn; whatever goes wrong in it, the machine is stopped and says so."""

@@ -30,6 +30,9 @@ if TYPE_CHECKING:
     from trochia.program import Program
 
 
+_LOOK = 4096  #: segments behind that are looked through for the beginning of a source line
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LiveState:
     """Motion at one instant.
@@ -210,6 +213,20 @@ class LivePlan:
         return LiveState(t=t, position=part.position([t])[0], speed=sign * float(state["v"]),
                          acceleration=sign * float(state["a"]), line=int(part.line_at([t])[0]),
                          power=0.0 if dark else float(part.power_at([t])[0]))  # fmt: skip
+
+    def along(self, t: float) -> tuple[int, float]:
+        """Return at an instant the row of the program's path under way, and how far along its source line [mm]."""
+        leg = self._leg(t)
+        state = leg.ahead.state(t)
+        place = Place(int(state["segment"]), float(state["s"]))
+        if leg.back_to is not None:
+            place = forward_of(leg.start, leg.ahead.road, place, leg.back_to)
+        road = self._road
+        row = min(place.row, road.end - 1) - road.base
+        first = max(row - _LOOK, 0)
+        other = np.flatnonzero(road.lines[first:row] != road.lines[row]) if row > 0 else np.zeros(0, np.intp)
+        begin = first + (int(other[-1]) + 1 if len(other) else 0)
+        return place.row, float(road.segments["length"][begin:row].sum()) + place.s
 
     def portions(self, begin: float, end: float) -> Iterator[Portion]:
         """Yield the motion from one instant to another as portions; at rest in a hold there is none."""
