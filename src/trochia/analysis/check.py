@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from trochia.analysis.following import ServoUse, servo_problems, servo_use
 from trochia.analysis.habits import locked_moves, warnings
 from trochia.analysis.margins import margins
 from trochia.analysis.problems import Problem, Severity, from_error, more_lines
@@ -37,12 +38,15 @@ class Verdict:
         How many errors there are beyond those in ``problems``.
     torque
         What the motors have to give, by joint; of joints that name motor and driver.
+    servos
+        The same of servo joints that name motor, amplifier and loop.
     """
 
     problems: tuple[Problem, ...]
     plan: Plan | None = None
     more: int = 0
     torque: dict[str, TorqueUse] = field(default_factory=dict[str, TorqueUse])
+    servos: dict[str, ServoUse] = field(default_factory=dict[str, ServoUse])
 
     @property
     def ok(self) -> bool:
@@ -67,16 +71,17 @@ class Verdict:
             "time_s": self.time_s,
             "problems": [problem.figures() for problem in self.problems],
             "more_errors": self.more,
-            "margins": {} if self.plan is None else margins(self.plan, self.torque),
+            "margins": {} if self.plan is None else margins(self.plan, self.torque, self.servos),
         }
 
 
 def judge(plan: Plan) -> Verdict:
     """Return the verdict on a plan."""
-    uses = torque_use(plan)
+    uses, servos = torque_use(plan), servo_use(plan)
     problems = [
         *lost_step_problems(plan, uses),
         *heat_problems(plan),
+        *servo_problems(plan, servos),
         *warnings(plan.program, plan.machine),
         *_slowed(plan),
     ]
@@ -85,7 +90,7 @@ def judge(plan: Plan) -> Verdict:
     outside = travel_error(plan)
     if outside is not None:
         problems.insert(0, from_error(outside, plan.program.name))
-    return Verdict(problems=tuple(problems), plan=plan, torque=uses)
+    return Verdict(problems=tuple(problems), plan=plan, torque=uses, servos=servos)
 
 
 def _slowed(plan: Plan) -> list[Problem]:

@@ -6,13 +6,15 @@ In: a verdict with its plan and the program's text.  Out: a :class:`Proof`, and 
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from trochia import recorder
 from trochia.analysis.compose import report_data
 from trochia.analysis.errors import contour_error, following_error, lost_steps
+from trochia.analysis.following import following_problems
 from trochia.analysis.plots import path_picture
+from trochia.analysis.problems import Severity
 from trochia.analysis.report import write_report
 from trochia.backends import Twin
 from trochia.program.source import SourceText
@@ -39,6 +41,8 @@ class Proof:
 
     Attributes
     ----------
+    verdict
+        On the plan, with what the run has shown.
     following_error, contour_error
         Peak and rms of actual minus commanded, and of the distance to the commanded path [mm, degree].
     lost_steps
@@ -48,6 +52,7 @@ class Proof:
     """
 
     plan: Plan
+    verdict: Verdict
     recording: Recording
     following_error: dict[str, Figures]
     contour_error: Figures
@@ -57,6 +62,8 @@ class Proof:
     def figures(self) -> dict[str, Any]:
         """Return what `trochia simulate --json` prints."""
         return self.plan.figures() | {
+            "ok": self.verdict.ok,
+            "problems": [problem.figures() for problem in self.verdict.problems],
             "following_error": {axis: asdict(figures) for axis, figures in self.following_error.items()},
             "contour_error_mm": asdict(self.contour_error),
             "lost_steps": self.lost_steps,
@@ -85,11 +92,13 @@ def prove(
     blocks = _told(twin.run(plan.trajectory), twin.tick / plan.time_s if plan.time_s else 1.0, progress)
     recorder.write(folder / "recording", twin.header(plan.trajectory, program=plan.program.name), blocks)
     recording = recorder.read(folder / "recording")
+    verdict = _seen(verdict, plan, recording)
     data = report_data(verdict, plan, recording, SourceText(text))
     write_report(folder / "report.html", data)
     path_picture(folder / "path.png", data)
     return Proof(
         plan=plan,
+        verdict=verdict,
         recording=recording,
         following_error=following_error(recording),
         contour_error=contour_error(recording),
@@ -99,6 +108,13 @@ def prove(
             for name, file in (("report", "report.html"), ("picture", "path.png"), ("recording", "recording"))
         },
     )
+
+
+def _seen(verdict: Verdict, plan: Plan, recording: Recording) -> Verdict:
+    """Return the verdict with the problems that the run has shown, errors first."""
+    found = [*verdict.problems, *following_problems(plan, recording)]
+    found.sort(key=lambda problem: problem.severity is not Severity.ERROR)
+    return replace(verdict, problems=tuple(found))
 
 
 def _period(plan: Plan) -> float:

@@ -62,16 +62,21 @@ def command(
         proof = prove(job.verdict, job.text, output, period=period, progress=progress)
     if as_json:
         options.print_json(proof.figures())
-        sys.exit(0 if job.verdict.ok else 1)
+        sys.exit(0 if proof.verdict.ok else 1)
     show_plan(job.verdict.plan)
     contour = proof.contour_error
     click.echo(f"contour error at most {contour.peak * 1000:.2f} µm, rms {contour.rms * 1000:.2f} µm")
     lost = {joint: n for joint, n in proof.lost_steps.items() if n}
     if lost:
         click.echo("lost steps: " + ", ".join(f"{joint} {n}" for joint, n in lost.items()))
-    show_verdict(job.verdict)
+    late = {axis: figures for axis, figures in proof.following_error.items() if figures.peak > 0}
+    if late:
+        units_of = {axis.name: axis.unit for axis in proof.plan.machine.axes}
+        click.echo("following error at most " + ", ".join(
+            f"{axis} {figures.peak:.4g} {units_of[axis]}" for axis, figures in late.items()))  # fmt: skip
+    show_verdict(proof.verdict)
     every, servo = (1000 * seconds for seconds in (proof.recording.period, job.verdict.plan.machine.servo_period))
     if every > servo and period is None:
         click.echo(f'recorded every {every:g} ms, for it is long; --rate "{servo:g} ms" records every servo period')
     click.echo(f"report   {proof.files['report']}")
-    sys.exit(0 if job.verdict.ok else 1)
+    sys.exit(0 if proof.verdict.ok else 1)

@@ -25,7 +25,9 @@ def test_help_lists_the_commands():
         assert f"  {command} " in done.stdout
 
 
-@pytest.mark.parametrize("command", ["check", "canon", "plan", "simulate", "interpolate", "profile", "sweep", "size", "machine"])
+@pytest.mark.parametrize(
+    "command", ["check", "canon", "plan", "simulate", "interpolate", "profile", "sweep", "size", "machine"]
+)
 def test_every_command_has_help_with_an_example(command: str):
     done = trochia(command, "--help")
     assert done.returncode == 0
@@ -72,8 +74,8 @@ def test_simulate_writes_report_picture_and_recording(tmp_path: Path):
     assert set(proof) > {"time_s", "following_error", "contour_error_mm", "lost_steps", "files"}
     assert Path(proof["files"]["report"]).read_text(encoding="utf-8").lower().startswith("<!doctype html>")
     assert Path(proof["files"]["picture"]).read_bytes().startswith(b"\x89PNG")
-    # an ideal servo stands on the nearest of 4096 counts a mm
-    assert proof["following_error"]["X"]["peak"] <= 0.5 / 4096 * 1.0001
+    # a servo follows as its loop lets it: late, but by less than the 1000 counts (of 4096 a mm) of the card's warning
+    assert 1 / 4096 < proof["following_error"]["X"]["peak"] < 1000 / 4096
 
 
 @pytest.mark.parametrize(
