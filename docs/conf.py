@@ -17,4 +17,5 @@ autodoc_member_order = "bysource"
 autodoc_typehints = "description"
 nitpicky = False
 
-runpy.run_path(str(Path(__file__).parent / "language_pages.py"))["write"]()
+for _pages in ("language_pages.py", "api_pages.py"):
+    runpy.run_path(str(Path(__file__).parent / _pages))["write"]()

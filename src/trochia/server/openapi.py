@@ -21,6 +21,7 @@ REFUSALS = {
     409: "the machine, or whoever has control, refuses; the answer says why and what is legal",
     413: "the body is too long",
     415: "the body is no JSON",
+    504: "the controller does not answer",
     429: "too many attempts; the header Retry-After tells the seconds to wait",
 }
 
@@ -52,9 +53,9 @@ PATHS = (
          refuses=(401,)),
     Path(path="/api/command", method="post", handler="command",
          about="Have a command taken.  Jog is refused here: its lease is renewed on a socket.", takes="Command",
-         gives="Ack", refuses=(400, 401, 403, 409, 413, 415)),
+         gives="Ack", refuses=(400, 401, 403, 409, 413, 415, 504)),
     Path(path="/api/stop", method="post", handler="stop", about="STOP: for everybody who is logged in.", gives="Ack",
-         refuses=(401,)),
+         refuses=(401, 504)),
     Path(path="/api/path", method="get", handler="path",
          about="Path of the loaded program, a binary frame; `points` bounds its size.", gives="Frame",
          refuses=(400, 401, 404)),

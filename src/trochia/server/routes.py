@@ -35,6 +35,7 @@ _Kind = TypeVar("_Kind", bound=msgspec.Struct)
 SMALL = 4096  #: bytes of a login
 PAGE = {"/": ("index.html", "text/html"), "/page.js": ("page.js", "text/javascript"),
         "/page.css": ("page.css", "text/css")}  # fmt: skip
+PATIENCE = 120.0  #: for the controller's answer: a long program is planned before it is loaded [s]
 ATTEMPTS = 4  #: passwords that may wait to be looked at
 
 
@@ -152,7 +153,10 @@ class Routes:
             loop.call_soon_threadsafe(lambda: future.cancelled() or future.set_result(ack))
 
         self._desk.command(session, command, answered)
-        ack = await future
+        try:
+            ack = await asyncio.wait_for(future, PATIENCE)
+        except TimeoutError:
+            raise Refused(504, f"the controller has not answered in {PATIENCE:g} s") from None
         return answer(ack, (200 if ack.ok else 409) if allowed else 403)
 
 

@@ -70,7 +70,7 @@ class Connection:
             desk.hub.leave(self._wake.set)
             desk.part(self._control_changed)
             self._watch(on=False)
-            if self._jogs and desk.hub.latest.state == "jogging":
+            if self._jogs and desk.authority.holder is self._session:
                 desk.runtime.send(JogStop())
             desk.audit.note("disconnect", self._session, self._address)
 
@@ -155,7 +155,7 @@ class Connection:
             self._answer(Ack(id=command.id, ok=False, reason=f"{UNDER_WAY} commands wait for their answers already"))
             return
         self._under_way += 1
-        self._jogs = self._jogs or isinstance(command, Jog)
+        self._jogs = isinstance(command, Jog)
         self._desk.command(self._session, command, self._answered, age=self._desk.hub.age(self._seen))
 
     def _answered(self, ack: Ack) -> None:
