@@ -11,6 +11,7 @@ from trochia.machine.load import load
 from trochia.planner import PROFILES, plan
 from trochia.planner.live import LivePlan, Speeds, StreamPlanner
 from trochia.planner.live.pieces import reversed_path
+from trochia.planner.ramp import ramp
 from trochia.toolpath import build
 
 LINE = "G64 P0.02\nG1 X200 F6000\nM2\n"
@@ -136,3 +137,19 @@ def test_the_way_back_is_the_same_path():
         assert back.points(there, s) == pytest.approx(path.points(here, high - s), abs=1e-9)
         assert back.points(there, s, 1) == pytest.approx(-path.points(here, high - s, 1), abs=1e-9)
         assert back.points(there, s, 2) == pytest.approx(path.points(here, high - s, 2), abs=1e-9)
+
+
+def _stairs(step, tolerance):
+    return "".join([f"G64 P{tolerance}\nF6000\n", *(f"G1 X{step * (k + 1)} Y{step * k}\nY{step * (k + 1)}\n"
+                                                    for k in range(8)), "M2\n"])  # fmt: skip
+
+
+@pytest.mark.parametrize("part", [0.23, 0.31, 0.37, 0.43, 0.52, 0.64, 0.71])
+def test_a_hold_on_stairs_passes_one_corner_at_most(part):
+    """Up to a corner both axes do what a stop would do; behind it that which began to move stops too."""
+    live, whole = live_of(_stairs(1.0, 0.01), "s-curve")
+    t = part * whole.duration
+    state = live.state(t)
+    straight = sum(piece.duration for piece in ramp((state.speed, state.acceleration), (0.0, 0.0), 800.0, 20_000.0))
+    # through the corner at 6.6 mm/s, 0.17 mm, and from there with a = 2 v² / L to rest: 0.077 s
+    assert live.hold(t) - t <= straight + 0.026 + 0.077

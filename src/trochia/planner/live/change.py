@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from trochia.planner.live.hold import before, strengths
+from trochia.planner.live.hold import before, following, kicks, strengths
 from trochia.planner.live.laid import keeps, lay
 from trochia.planner.live.portion import states_at
 from trochia.planner.live.road import Place
@@ -48,6 +48,7 @@ def change(
         Override of programmed feeds that may still be kept on the way.
     """
     instant, step = t, rules.stopping_time / _INSTANTS
+    jumps = kicks(phases) if rules.jerk_limited else np.zeros(0)
     while instant < until:
         state = states_at(phases, np.array([instant]))[0]
         crossing = None if state["flags"] & 1 else cross(road, rules, state, other, feed)
@@ -55,7 +56,7 @@ def change(
             led = np.concatenate([before(phases, instant), crossing.phases])
             end = float(led["t"][-1] + led["duration"][-1])
             return led, after(other, crossing.at, end)
-        instant += step
+        instant = following(jumps, instant, step)
     return None
 
 

@@ -2,7 +2,9 @@
 
 There is always a stop in hand: the motion in hand itself, which ends at rest.  A better one is a ramp to rest from some
 instant on, taken only when it keeps every limit along all of its way; from instants on its way still better ones are
-looked for.  So whatever the path does, every motion that is begun has been looked at to its end.
+looked for.  Where acceleration along the path jumps (behind an overlap of two moves) a stop is looked for at that very
+instant: a little later motion may be too fast to stop before the next corner.  So whatever the path does, every motion
+that is begun has been looked at to its end.
 """
 
 from __future__ import annotations
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
 #: parts of what a straight line would allow that are tried, the strongest first
 STRENGTHS = (1.4, 1.2, 1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.12, 0.06)
 _INSTANTS = 48  #: in a worst stopping time at which a better stop is looked for
+_APART = 1e-9  #: s: sooner than that is the same instant
 
 
 def strengths(road: Road, rules: Rules, state: NDArray[Any]) -> Iterator[tuple[float, float]]:
@@ -74,14 +77,14 @@ def hold(road: Road, rules: Rules, phases: NDArray[Any], t: float, feed: float) 
     end, step = _end(best), rules.stopping_time / _INSTANTS
     if states_at(best, np.array([t]))[0]["v"] == 0.0:
         return before(best, t)
-    instant = t
+    instant, jumps = t, kicks(best) if rules.jerk_limited else np.zeros(0)
     while instant < end - 1e-9:
         state = states_at(best, np.array([instant]))[0]
         stop = stop_from(road, rules, state, feed, end - instant - 1e-9)
         if stop is not None:
             best = np.concatenate([before(best, instant), stop])
             end = _end(best)
-        instant += step
+        instant = following(jumps, instant, step)
     return best
 
 
@@ -91,6 +94,19 @@ def before(phases: NDArray[Any], t: float) -> NDArray[Any]:
     kept = phases[: max(count, 1)].copy()
     kept["duration"][-1] = min(float(kept["duration"][-1]), max(t - float(kept["t"][-1]), 0.0))
     return kept
+
+
+def following(jumps: NDArray[np.float64], instant: float, step: float) -> float:
+    """Return the next instant: a step later, or at a jump of acceleration before."""
+    sooner = jumps[(jumps > instant + _APART) & (jumps < instant + step)]
+    return float(sooner[0]) if len(sooner) else instant + step
+
+
+def kicks(phases: NDArray[Any]) -> NDArray[np.float64]:
+    """Return when acceleration along the path jumps (k,) [s]."""
+    ends = phases["a"] + phases["duration"] * phases["j"]
+    small = 1e-6 * float(np.abs(phases["a"]).max(initial=0.0))
+    return phases["t"][1:][np.abs(phases["a"][1:] - ends[:-1]) > small]
 
 
 def _end(phases: NDArray[Any]) -> float:
