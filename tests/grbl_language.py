@@ -1,9 +1,10 @@
-"""The language of the strict GRBL model: settings, words and modal groups of a line, and the chords of an arc."""
+"""The language of the strict GRBL model: settings, words and modal groups of a line, the chords of an arc, a move."""
 
 from __future__ import annotations
 
 import math
 import re
+from dataclasses import dataclass
 
 SETTINGS = {
     "$0": "10", "$1": "25", "$2": "0", "$3": "0", "$4": "0", "$5": "0", "$6": "0", "$10": "3", "$11": "0.010",
@@ -86,3 +87,19 @@ def arc_points(  # noqa: PLR0917 - what an arc is made of
         point[second] = centre[1] + radius * math.sin(begin + share * angle)
         points.append(point)
     return [*points, end]
+
+
+@dataclass
+class Block:
+    """One straight move in the planner: end, speed [mm/s], and how far it has come."""
+
+    start: list[float]
+    end: list[float]
+    speed: float
+    jog: bool = False
+    rapid: bool = False
+    done: float = 0.0
+
+    @property
+    def length(self) -> float:
+        return math.dist(self.start, self.end)

@@ -12,25 +12,9 @@ import re
 from collections import deque
 from dataclasses import dataclass, field
 
-from grbl_language import SETTINGS, STARTING, Refused, arc_points, words_of
+from grbl_language import SETTINGS, STARTING, Block, Refused, arc_points, words_of
 
 RECEIVE, BLOCKS, WIDTH = 128, 15, 79
-
-
-@dataclass
-class Block:
-    """One straight move in the planner: end, speed [mm/s], and how far it has come."""
-
-    start: list[float]
-    end: list[float]
-    speed: float
-    jog: bool = False
-    rapid: bool = False
-    done: float = 0.0
-
-    @property
-    def length(self) -> float:
-        return math.dist(self.start, self.end)
 
 
 @dataclass
@@ -39,7 +23,6 @@ class Board:
 
     settings: dict[str, str] = field(default_factory=lambda: dict(SETTINGS))
     brake: float = 0.04
-    travel_signs: float = -1.0  # machine space is negative, as GRBL has it
 
     def __post_init__(self) -> None:
         self.out = bytearray()
@@ -193,7 +176,7 @@ class Board:
             return 0.0
         self.planner.popleft()
         self.position = list(block.end)
-        self.executed.append(tuple(block.end))  # type: ignore[arg-type]
+        self.executed.append(tuple(block.end))
         self.now = now - (left - needs)
         if not self.planner and not self.chords:
             self.state = "Idle"
@@ -326,7 +309,7 @@ class Board:
                 while self.planner:  # it waits for the planner to run dry first
                     block = self.planner.popleft()
                     self.position = list(block.end)
-                    self.executed.append(tuple(block.end))  # type: ignore[arg-type]
+                    self.executed.append(tuple(block.end))
             else:
                 self.modes |= {0: "G1", 1: "G17", 2: "G90", 4: "G94", 8: "G54", 12: "M5", 13: "M9"}
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from trochia.backends.grbl import codes
 from trochia.backends.grbl.links import TABLE, Link, Seen
 from trochia.backends.grbl.replies import Alarm, Error, Noise, Ok, Setting, StatusLine, Told, Welcome, parse
-from trochia.backends.grbl.stream import Stream
+from trochia.backends.grbl.stream import HOMING, Stream
 from trochia.backends.grbl.view import INCH, View
 from trochia.backends.program import Doing
 from trochia.languages.gcode.write import Line
@@ -26,6 +26,7 @@ POLL = 0.1  #: between status queries [s]
 SILENCE = 1.5  #: without a word the board counts as gone [s]
 PATIENCE = 4.0  #: for the first word, and for the welcome after a reset [s]
 UNANSWERED = 2.0  #: idle for so long with lines that have no answer [s]
+MOST_ASKS = 3  #: times all questions are asked again
 MOST_LINE = 400  #: a line longer than this is noise
 _CABLE = "Look at the cable, the supply and the baud rate ($I answers at the right one), then connect again."
 _MOVING = frozenset({Doing.RUN, Doing.JOG, Doing.HOME})
@@ -59,6 +60,7 @@ class Session:
         self._noise = 0
         self._again = False  # connected before: what still moves is ours to end
         self._asked: list[str] = []
+        self._asked_at, self._asks = now, 0
         self._after: list[str] = []  # lines to send once a reset is over
         self._now = now
 
@@ -82,6 +84,8 @@ class Session:
     def turn(self, now: float) -> bytes:
         """Return what to send now: questions of status, and lines as there is room."""
         self._now = now
+        if not self.stream.sent:
+            self._idle_since = now
         if self.link is not Link.LOST:
             self._watch()
         if self.link is Link.LOST:
@@ -204,7 +208,7 @@ class Session:
         if self.link is Link.CONNECTING:
             self._first(self.view.doing)
         idle = self.view.doing in {Doing.IDLE, Doing.CHECK}
-        if not idle or not self.stream.sent:
+        if not idle:
             self._idle_since = self._now
         if self.view.doing is not Doing.ALARM:
             self.alarm = 0
@@ -237,6 +241,7 @@ class Session:
 
     def _ask(self) -> None:
         self._asked = list(QUESTIONS)
+        self._asked_at = self._now
         self.stream.clear()
         self.stream.add(Line(text, 0) for text in QUESTIONS)
 
@@ -260,6 +265,11 @@ class Session:
             self.cut("the board did not come back from its reset")
         elif self.link in {Link.READY, Link.STOPPING, Link.ASKING} and now - self._heard > self._silence():
             self.cut(f"the board has been silent for {now - self._heard:.1f} s; it ends by itself what it had taken")
+        elif self.link is Link.ASKING and now - self._asked_at > UNANSWERED:
+            self._ask()  # an answer was lost, or never came: ask all of it again
+            self._asks += 1
+            if self._asks > MOST_ASKS:
+                self.cut("the board does not answer $I, $$, $#, $G and $N in GRBL's way")
         elif self.link is Link.READY and now - self._idle_since > UNANSWERED + self.stream.dwell:
             line = self.stream.sent[0]
             self._idle_since = now
@@ -268,8 +278,7 @@ class Session:
 
     def _silence(self) -> float:
         """Return how long the board may say nothing [s]: while it homes it answers nobody."""
-        homing = bool(self.stream.sent) and self.stream.sent[0].text == "$H"
-        return 60.0 if homing else SILENCE
+        return HOMING if self.stream.homing else SILENCE
 
     def _go(self, seen: Seen) -> bool:
         """Change the state, if the table has a row for it."""

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 RECEIVE = 128  #: bytes of GRBL's receive buffer, unless $I says otherwise
 BLOCKS = 15  #: moves of its planner, likewise
+HOMING = 60.0  #: that homing may take [s]
 
 _DWELL = re.compile(r"G0?4P([\d.]+)")
 
@@ -46,8 +47,15 @@ class Stream:
         return not (self.waiting or self.sent or self._taken)
 
     @property
+    def homing(self) -> bool:
+        """Whether the board is searching its switches: it answers nobody then."""
+        return bool(self.sent) and self.sent[0].text == "$H"
+
+    @property
     def dwell(self) -> float:
-        """How long the first line without an answer waits by itself [s]."""
+        """How long the first line without an answer may take by itself [s]: a dwell, a search for the switches."""
+        if self.homing:
+            return HOMING
         match = _DWELL.match(self.sent[0].text) if self.sent else None
         return float(match[1]) if match else 0.0
 
