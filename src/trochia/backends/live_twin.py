@@ -12,7 +12,7 @@ import numpy as np
 
 from trochia.backends.executor import Executor
 from trochia.backends.live import BUILT_IN, Orders, Report, Trouble
-from trochia.backends.plant import IdealPlant
+from trochia.backends.plant import Plant
 from trochia.errors import LocalProtocolError
 from trochia.messages import Cause
 
@@ -26,6 +26,9 @@ if TYPE_CHECKING:
     from trochia.machine.machine import Machine
 
     Switch = Callable[[NDArray[np.float64]], bool]
+
+
+AT_REST = 1000  #: servo periods at a time while servos settle
 
 
 class LiveTwin:
@@ -63,7 +66,7 @@ class LiveTwin:
         self.machine = machine
         self.latency = machine.servo_period
         self.ahead = ahead
-        self.plant = IdealPlant(machine, real)
+        self.plant = Plant(machine, real)
         self.inputs = {channel.name: False for channel in machine.io if channel.kind == "input"}
         names = (*BUILT_IN, *(channel.name for channel in machine.io if not channel.kind.endswith("input")))
         self.outputs = dict.fromkeys(names, 0.0)
@@ -113,6 +116,8 @@ class LiveTwin:
         """Take orders; see :class:`trochia.backends.live.SegmentBackend`."""
         if orders.stop or orders.enable is False:
             self._halt()
+        if orders.enable and not self._enabled:
+            self._rejoin()
         self._enabled = self._enabled if orders.enable is None else orders.enable
         self._set_outputs(orders)
         if orders.lit is not None:
@@ -158,6 +163,11 @@ class LiveTwin:
         self._timed.clear()
         self.outputs |= dict.fromkeys(BUILT_IN, 0.0)
 
+    def _rejoin(self) -> None:
+        """Command every servo to be where it is: its loop closes without a jump."""
+        true = self.plant.rejoin(self._executor.commanded - self._offset)
+        self._executor.queue.clear(true + self._offset, self._executor.executed)
+
     def _rest(self) -> None:
         self._velocity = np.zeros(len(self._names))
         self._beam = 0.0
@@ -165,6 +175,10 @@ class LiveTwin:
     def _run(self, ticks: int) -> int:
         """Run through up to so many servo ticks, and return how many."""
         if not self._executor.moving:
+            if self._enabled and self.plant.restless:
+                ticks = min(ticks, AT_REST)
+                self.plant.follow(np.tile(self._executor.commanded - self._offset, (ticks, 1)))
+                self._look_at_joints()
             self._now += ticks * self.machine.servo_period
             self._rest()
             self._outputs_due()
@@ -203,8 +217,10 @@ class LiveTwin:
 
     def _look_at_joints(self) -> None:
         """Stop at once where a load lags too far."""
-        error = np.abs(self._executor.commanded - self._offset - self.plant.load)
-        for joint, lag in zip(self.machine.joints, error, strict=True):
+        for joint, lag in zip(self.machine.joints, self.plant.lag, strict=True):
+            if joint.following_warning is not None and lag > joint.following_warning:
+                self._troubles.append(Trouble(cause=Cause.FOLLOWING_WARNING, joint=joint.name, value=float(lag),
+                                              limit=joint.following_warning))  # fmt: skip
             if joint.following_error is not None and lag > joint.following_error:
                 self._troubles.append(
                     Trouble(cause=Cause.FOLLOWING, joint=joint.name, value=float(lag), limit=joint.following_error)

@@ -13,6 +13,7 @@ import numpy as np
 from trochia.backends.live import Orders, Trouble
 from trochia.controller.alarms import TROUBLES, Alarms
 from trochia.controller.doings import OUTPUTS_OFF
+from trochia.controller.guards import Guards
 from trochia.controller.handlers import HANDLERS
 from trochia.controller.interrupted import Interrupted, work_entry
 from trochia.controller.job import Job
@@ -63,6 +64,7 @@ class Controller:
         self.work = work or WorkState()
         self.switches, self.overrides = SwitchStatus(), OverrideStatus()
         self.alarms = Alarms()
+        self._guards = Guards(machine)
         self.readier = Readier(machine)
         self.loaded: tuple[str, str] | None = None  # name and text of the program
         self.preview: Ready | None = None  # the program as it was planned when it was loaded
@@ -102,6 +104,8 @@ class Controller:
         """Take the backend's report of now and return what to tell it, in order.  A report is taken once."""
         self.report = report
         for trouble in report.troubles:
+            self.fault(trouble)
+        for trouble in self._guards.troubles(report, homing=self.state is State.HOMING):
             self.fault(trouble)
         self._look_at_power()
         if isinstance(self.activity, Jog) and self.activity.expired(now):

@@ -64,6 +64,7 @@ class Feeder:
         self._limits = live.rules.limits
         self._ahead = ahead
         self._power = power
+        self._stale = False  # whether the backend holds motion that is planned no more
         self._stops: list[tuple[float, float]] = []  # (plan time at a row's end, its ∫ s du)
 
     def plan_time(self, executed: float) -> float:
@@ -102,18 +103,30 @@ class Feeder:
                 self.sent = end
                 continue
             segments = joined(parts)
-            self.sent = portions[-1].end
+            self.sent, self._stale = portions[-1].end, False
             ends = begin + np.cumsum(segments.duration)
             self._stops += zip(ends.tolist(), (segments.slew * segments.duration).tolist(), strict=True)
             yield segments, self.origin + begin, portions
+        if self._stale and self.sent >= self.end - 1e-12:
+            self._stale = False
+            yield self._rest(self.sent), self.origin + self.sent, []
 
     def _portions(self, begin: float, end: float) -> list[Portion]:
         return [part for part in self.live.portions(begin, end) if len(part.phases)]
 
     def replan(self, at: float) -> None:
         """Note that the plan has changed from plan time ``at`` on: what was sent beyond is to be sent anew."""
+        self._stale = self._stale or self.sent > at
         self.sent = min(self.sent, at)
         self._stops = [stop for stop in self._stops if stop[0] <= at]
+
+    def _rest(self, at: float) -> Segments:
+        """Return a row at rest: what was sent beyond a time must go also where nothing moves from there on."""
+        here = self.live.state(at)
+        joints = np.zeros((1, len(self._matrix), 4))
+        joints[0, :, 0] = self._matrix @ here.position
+        return Segments(duration=np.array([ROW]), joints=joints, line=np.array([here.line], np.uint32),
+                        power=np.zeros(1, np.float32), slew=np.array([STEEPEST]))  # fmt: skip
 
     def _enough(self, now: float) -> bool:
         return self.sent - now >= self._ahead and sum(stop for _, stop in self._stops) >= STOP

@@ -12,6 +12,7 @@ import msgspec
 
 from trochia.backends.live import Orders, Trouble
 from trochia.controller.doings import OUTPUTS_OFF
+from trochia.controller.guards import stands_on
 from trochia.controller.homing import Home as Homing
 from trochia.controller.job import Job
 from trochia.controller.jog import Jog
@@ -263,6 +264,11 @@ def _jog(
         if it.trusted[axis.name] and not axis.minimum - 1e-9 <= target[axis.name] <= axis.maximum + 1e-9:
             raise OutOfTravelError(f"{axis.name} would go to {target[axis.name]:g} {axis.unit}, its travel is "
                                    f"{axis.minimum:g} to {axis.maximum:g}")  # fmt: skip
+    here = it.position()
+    for axis in axes:
+        switch = stands_on(it.machine, it.report, axis.name, target[axis.name] - here[axis.name])
+        if switch is not None:
+            raise OutOfTravelError(f"{axis.name} stands on its limit switch {switch}", hint="Jog the other way.")
     feed = speed if speed is not None else min(axis.velocity for axis in axes) / 2
     if not feed > 0.0:
         raise LimitError(f"a jog's speed must be above zero, not {feed!r}")

@@ -314,3 +314,17 @@ def test_the_journal_tells_what_was_executed(bench, mill: Machine, tmp_path) -> 
     assert points[-1]["line"] == true.program.line
     assert abs(points[-1]["position"]["X"] - true.axes[0].commanded) <= 50 * 0.02
     assert {"begin", "command", "state", "point"} <= {entry["kind"] for entry in kinds}
+
+
+@pytest.mark.parametrize("command", [c.Hold(), c.Abort()])
+def test_a_stop_before_the_first_tick_moves_nothing(bench, mill: Machine, command: c.AnyCommand) -> None:
+    b = bench(mill).on()
+    b.ok(c.Load(name="square", text=SQUARE))
+    b.ok(c.Run())  # 0.2 s of motion are with the backend now
+    b.ok(command)
+    status = b.run(until="held" if isinstance(command, c.Hold) else "idle")
+    assert b.run(0.3).axes[0].commanded == pytest.approx(0.0, abs=1e-3)
+    if status.state == "held":
+        b.ok(c.Resume())
+        assert [axis.commanded for axis in b.run(until="idle").axes] == pytest.approx([0.0, 0.0, 0.0], abs=1e-9)
+        assert max(position[0] for _, position, _, _ in b.trace) == pytest.approx(20.0, abs=0.01)

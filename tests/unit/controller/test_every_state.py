@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from hypothesis import HealthCheck, settings
+from hypothesis import HealthCheck, Phase, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
 
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from trochia.machine.machine import Machine
 
 TURN = 0.005
+STEP = 3e-4  #: of a motor: where it stands at rest may be that far from where it is told [mm]
 SLACK = 1e-6  #: of a place, and of what is rounded [mm]
 TEXTS = (
     "G21 G90 G94 M3 S60\nG1 X8 F1500\nY8\nG2 X0 Y0 R8\nM2\n",
@@ -214,7 +215,7 @@ class EveryState(RuleBasedStateMachine):
         if self.it.state in {State.OFF, State.ESTOP} and was is self.it.state:
             np.testing.assert_array_equal(self.twin.plant.load, before)
         if self.it.state is State.IDLE and was is State.IDLE and not self.twin._executor.moving:
-            np.testing.assert_allclose(self.twin.plant.load, before, atol=1e-9)
+            np.testing.assert_allclose(self.twin.plant.load, before, atol=STEP)
         self.looks_right()
 
     @invariant()
@@ -242,8 +243,9 @@ class EveryState(RuleBasedStateMachine):
 
 TestEveryState = EveryState.TestCase
 TestEveryState.settings = settings(
-    max_examples=int(os.environ.get("TROCHIA_STATES", "8")),
+    max_examples=int(os.environ.get("TROCHIA_STATES", "5")),
     stateful_step_count=25,
+    phases=[Phase.explicit, Phase.reuse, Phase.generate],  # a case is long: it is not cut down
     deadline=None,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.filter_too_much],
 )
