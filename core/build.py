@@ -38,6 +38,7 @@ HEADERS = [
     "shared/pid.h",
     "host/integer_pid.h",
     "host/servo_law.h",
+    "host/follower.h",
     "host/contour.h",
 ]
 FLAGS = ["-std=c11", "-O3", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-ffp-contract=off", "-fno-math-errno"]
