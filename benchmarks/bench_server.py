@@ -67,6 +67,11 @@ async def cost(
     return (after[0] - before[0]) / took, (after[1] - before[1]) / took, rate / took / max(len(clients), 1)
 
 
+def newest(client: AsyncClient) -> float:
+    """Return the time of the newest sample that has arrived [s]."""
+    return float(client.frames[-1].columns["time"][-1]) if client.frames else 0.0
+
+
 async def latency(client: AsyncClient) -> list[float]:
     """Return the times from sending a command to the first sample of the machine in motion [s]."""
     await client.watch(samples=True)
@@ -76,8 +81,8 @@ async def latency(client: AsyncClient) -> list[float]:
         client.frames.clear()
         begin = time.monotonic()
         await client.command(JogBy(way={"X": 1.0 if i % 2 == 0 else -1.0}))
-        await client.wait_for_new(lambda status: status.state == "idle", timeout=30.0)
-        await asyncio.sleep(0.25)
+        end = await client.wait_for_new(lambda status: status.state == "idle", timeout=30.0)
+        await client.wait_until(lambda _, t=end.time: newest(client) >= t, timeout=30.0)
         rows = [(t, v) for f in client.frames for t, v in zip(f.columns["time"], f.columns["values"], strict=True)]
         names = client.frames[-1].head.about["names"]
         column = names.index("X.velocity")

@@ -9,41 +9,57 @@ import sys
 import time
 
 import msgspec
+import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from websockets.exceptions import ConnectionClosed
 
+import trochia
+from trochia.backends.live_twin import LiveTwin
+from trochia.controller.runtime import PERIOD, Runtime
 from trochia.errors import RemoteProtocolError
 from trochia.messages import decode_message, unpack
 from trochia.messages.command import Enable
 from trochia.server.desk import LEASE
 from trochia.server.sockets import AHEAD, MISTAKES
 
-#: between the last renewal as the controller took it and the order to brake: the lease, and turns of a busy computer
-BRAKES = LEASE + 0.02
-
 JOGGER = """
 import sys, time
-from trochia.client import Client
+from trochia.client import Client, Refused
 from trochia.messages.command import Enable
 client = Client.connect(sys.argv[1], "ada", "ada-ada-ada")
 client.take()
 client.command(Enable())
 print("ready", flush=True)
-client.jog("X", 5.0, 60.0)
+while True:
+    try:
+        client.jog("X", 5.0, 60.0)
+    except Refused:  # this computer is so busy that the lease ran out: once more
+        time.sleep(0.1)
 """
 
 
-def _lease(place) -> tuple[float, float]:
-    """Return when the jog last was renewed, and when it began to brake, by the controller's own clock [s]."""
-    renewed, ended = 0.0, 0.0
+def _jogs(place) -> tuple[list[float], float | None]:
+    """Return when the last jog was renewed and when it began to brake, None: not yet, by the controller's clock [s]."""
+    renewed, ended = [], None
     for entry in place.journal():
+        if entry["kind"] == "state" and entry["state"] == "jogging":
+            renewed, ended = renewed[-1:], None
         if entry["kind"] == "command" and entry["command"] == "jog":
-            renewed = entry["time"]
-        if entry["kind"] == "state" and entry["was"] == "jogging" and not ended:
+            renewed.append(entry["time"])
+        if entry["kind"] == "state" and entry["was"] == "jogging":
             ended = entry["time"]
     return renewed, ended
+
+
+def _brakes_in_time(place) -> None:
+    """Hold the last jog against its lease, two turns, and what this computer is known to have been late."""
+    renewed, ended = _jogs(place)
+    assert ended is not None
+    load = place.runtime.load
+    assert renewed[-1] < ended <= renewed[-1] + LEASE + 2 * PERIOD + load.late + load.longest
+    assert LEASE + 2 * PERIOD < 0.15
 
 
 def _wait(place, state: str) -> None:
@@ -68,16 +84,15 @@ def test_a_jog_brakes_when_its_client_is_frozen_or_killed(place, how: signal.Sig
     try:
         assert jogger.stdout is not None
         assert jogger.stdout.readline() == b"ready\n"
-        _wait(place, "jogging")
-        time.sleep(0.3)
-        assert place.runtime.status.state == "jogging"  # renewed
+        while len((found := _jogs(place))[0]) < 4 or found[1] is not None:
+            assert jogger.poll() is None
+            time.sleep(0.02)
         os.kill(jogger.pid, how)
         _wait(place, "idle")
     finally:
         jogger.kill()
         jogger.communicate()
-    renewed, ended = _lease(place)
-    assert renewed < ended <= renewed + BRAKES
+    _brakes_in_time(place)
     assert place.runtime.status.axes[0].velocity == 0.0
 
 
@@ -90,8 +105,7 @@ def test_a_jog_brakes_when_its_socket_is_closed(place, tell, hear) -> None:
         tell(socket, {"kind": "jog", "axis": "X", "speed": 5.0, "id": 3, "lease": 1.0})
         assert hear(socket, "ack").ok
     _wait(place, "idle")
-    renewed, ended = _lease(place)
-    assert renewed < ended <= renewed + BRAKES  # the lease of a second was cut
+    _brakes_in_time(place)  # the lease of a second was cut, and the socket's end is the jog's
 
 
 def test_whoever_does_not_see_the_machine_cannot_jog_it(place, tell, hear) -> None:
@@ -114,24 +128,26 @@ def test_whoever_does_not_see_the_machine_cannot_jog_it(place, tell, hear) -> No
 def test_a_slow_client_gets_the_newest_and_no_backlog(place, tell, hear) -> None:
     with place.socket("eve") as socket:
         numbers = [hear(socket, "status").sequence]
-        time.sleep(1.0)  # some 50 statuses
+        while place.desk.hub.sequence < numbers[0] + 50:
+            time.sleep(0.05)
         numbers += [hear(socket, "status").sequence for _ in range(AHEAD - 1)]
         with pytest.raises(TimeoutError):
             socket.recv(timeout=0.3)
+        newest = place.desk.hub.sequence
         tell(socket, {"kind": "seen", "sequence": numbers[-1]})
-        newest = hear(socket, "status").sequence
-        assert newest - numbers[-1] > 30
-        assert place.runtime.status.sequence - newest < 20
+        assert hear(socket, "status").sequence >= newest > numbers[-1] + AHEAD
         tell(socket, {"kind": "estop", "id": 9})  # and commands of a client that does not see are answered
         assert hear(socket, "ack").ok
 
 
-def test_status_comes_fifty_times_a_second(place) -> None:
-    with place.client("eve") as eve:
-        first = eve.status
-        last = eve.wait_until(lambda status: status.time > first.time + 1.0, timeout=30.0)
-    made = (last.sequence - first.sequence) / (last.time - first.time)
-    assert 25.0 < made < 55.0  # of the controller's own clock; a busy computer makes fewer
+def test_status_comes_fifty_times_a_second_of_a_clock_that_is_not_quite_even() -> None:
+    runtime, chance = Runtime(LiveTwin(trochia.load("reference-mill"))), np.random.default_rng(1)
+    told = set()
+    runtime.watchers.append(lambda status, _: told.add(status.sequence))
+    for turn in range(1, 2001):
+        runtime.turn(turn * PERIOD + chance.uniform(-0.001, 0.001))
+    runtime.close()
+    assert len(told) == pytest.approx(500, abs=2)
 
 
 @pytest.mark.parametrize("garbage", ["", "[]", "null", '{"kind":"jog"}', '{"kind":"fly","id":1}', '{"id":1}', "\x00",
