@@ -20,18 +20,25 @@ trochia_plant_constants trochia_plant_prepare(const trochia_plant *p) {
     k.dry_load = p->load_friction.coulomb > 0.0 || p->load_friction.stick > 0.0;
     k.sticky_motor = p->motor_friction.stick != p->motor_friction.coulomb && p->motor_friction.stribeck > 0.0;
     k.sticky_load = p->load_friction.stick != p->load_friction.coulomb && p->load_friction.stribeck > 0.0;
+    k.conductance = 1.0 / p->resistance;
+    k.per_smooth_motor = 1.0 / p->motor_friction.smooth;
+    k.per_smooth_load = 1.0 / p->load_friction.smooth;
+    k.per_stribeck_motor = k.sticky_motor ? 1.0 / p->motor_friction.stribeck : 0.0;
+    k.per_stribeck_load = k.sticky_load ? 1.0 / p->load_friction.stribeck : 0.0;
     return k;
 }
 
-static double friction(const trochia_friction *f, int dry, int sticky, double w) {
+/* Beyond these exp(-x^2) and 1 - |tanh x| are less than a double of their size can show. */
+static const double GONE = 40.0, FULL = 20.0;
+
+static double friction(const trochia_friction *f, int dry, double per_smooth, double per_stribeck, double w) {
     double force = f->viscous * w + f->offset;
     if (dry) {
+        const double x = w * per_stribeck, y = w * per_smooth;
         double level = f->coulomb;
-        if (sticky) {
-            const double x = w / f->stribeck;
+        if (per_stribeck > 0.0 && x * x < GONE)
             level += (f->stick - f->coulomb) * exp(-x * x);
-        }
-        force += level * tanh(w / f->smooth);
+        force += y > FULL ? level : y < -FULL ? -level : level * tanh(y);
     }
     return force;
 }
@@ -50,7 +57,7 @@ static double torque(const trochia_plant *p, const trochia_plant_constants *k, t
             const double inner = v - p->emf_constant * w;
             v -= inner > p->drop ? p->drop : inner < -p->drop ? -p->drop : inner;
         }
-        target = (v - p->emf_constant * w) / p->resistance;
+        target = (v - p->emf_constant * w) * k->conductance;
     }
     s->current = between(k->keep * before + k->gather * target, p->most_current);
     return p->torque_constant * 0.5 * (k->keep > 0.0 ? before + s->current : 2.0 * s->current);
@@ -68,8 +75,10 @@ void trochia_plant_step(const trochia_plant *p, const trochia_plant_constants *k
                         double command, double disturbance) {
     const double h = p->h, half = 0.5 * h;
     const double w = s->motor_speed + half * s->motor_force, z = s->load_speed + half * s->load_force;
-    const double drive = torque(p, k, s, command, w) - friction(&p->motor_friction, k->dry_motor, k->sticky_motor, w);
-    const double against = friction(&p->load_friction, k->dry_load, k->sticky_load, z) + p->load + disturbance;
+    const double drive = torque(p, k, s, command, w) -
+                         friction(&p->motor_friction, k->dry_motor, k->per_smooth_motor, k->per_stribeck_motor, w);
+    const double against =
+        friction(&p->load_friction, k->dry_load, k->per_smooth_load, k->per_stribeck_load, z) + p->load + disturbance;
     if (k->rigid) {
         const double a = (drive - against) * k->per_motor, v = s->motor_speed;
         s->motor_speed = v + h * a;

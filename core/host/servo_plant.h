@@ -8,7 +8,10 @@
 typedef struct {
     double keep, gather; /* of the current over a step; VOLTAGE without inductance: keep 0 */
     double per_motor, per_load;
-    double half; /* of the gap */
+    double half;                                  /* of the gap */
+    double conductance;                           /* 1 / R */
+    double per_smooth_motor, per_smooth_load;     /* 1 / eps */
+    double per_stribeck_motor, per_stribeck_load; /* 1 / ws */
     int rigid, dry_motor, dry_load, sticky_motor, sticky_load;
 } trochia_plant_constants;
 

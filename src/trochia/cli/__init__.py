@@ -26,6 +26,8 @@ COMMANDS = {
     "profile": "A stepper's velocity profile, step by step, and whether it will do.",
     "sweep": "A stepper's torque-speed curve behind its driver, with a program's operating points.",
     "size": "Is a joint's motor strong, fast and cool enough for what it has to do?",
+    "identify": "Find an axis' model: by experiment on its twin, or from measured motion.",
+    "tune": "Gains for a servo joint or a model: margins, before and after.",
     "machine": "New, show, check, import: machine files.",
 }
 

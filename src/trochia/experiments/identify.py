@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from trochia.servo.axis import Loop
 
 _FRICTION_SPEEDS = (1.0, 0.65, 0.35, 0.15)  # of the greatest
+_CRUISE = 0.2468  # of the greatest: counts that beat with the sampling look like distortion
 _FIRST = 2e-3  # first pulse, of the greatest command
 _HELD = 0.3  # of all friction: what surely holds the load back
 
@@ -88,7 +89,7 @@ def identify(
     progress("friction")
     friction = steady_speeds(axis, loop, bounds, [part * speed for part in _FRICTION_SPEEDS])
     progress("frequency response")
-    level, cruise = friction["coulomb"], 0.25 * speed
+    level, cruise = friction["coulomb"], _CRUISE * speed
     response = by_multisine(axis, loop, bounds, Excitation(max(level, 0.1 * pulse.torque), band, cruise))
     try:
         train = two_mass(response, viscous=friction["viscous"])

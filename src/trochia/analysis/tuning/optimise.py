@@ -70,8 +70,16 @@ def optimise(
         return min(step.settling, 1.0) + 0.2 * max(step.overshoot - 0.05, 0.0) + 1e-3 * step.error
 
     spans = [(-0.7, 0.7), (-1.0, 1.0), (-0.7, 0.7), (-1.5, 0.7), (0.02, 1.0)]
-    found = differential_evolution(rating, spans, x0=np.array([-0.01, 0.0, 0.0, -0.2, 0.9]), maxiter=generations,
-                                   popsize=people // 2, rng=np.random.default_rng(seed), polish=False, tol=1e-6)  # fmt: skip
+    found = differential_evolution(
+        rating,
+        spans,
+        x0=np.array([-0.01, 0.0, 0.0, -0.2, 0.9]),
+        maxiter=generations,
+        popsize=people // 2,
+        rng=np.random.default_rng(seed),
+        polish=False,
+        tol=1e-6,
+    )
     if found.fun >= _BROKEN:
         if breach(controller_response(start.loop, frequency) * body, kept) > 0.0:
             raise LimitError("no loop keeps these margins on this axis", hint="Allow a greater Ms, or smaller margins.")
