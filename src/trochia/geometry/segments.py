@@ -135,8 +135,8 @@ def _of_circles(one: Segment, other: Segment) -> list[Vector]:
     apart = hypot(across, up)
     if apart <= NEAR:
         return []
-    along = (one.radius**2 - other.radius**2 + apart * apart) / (2.0 * apart)
-    rest = one.radius**2 - along * along
+    along = (one.radius * one.radius - other.radius * other.radius + apart * apart) / (2.0 * apart)
+    rest = one.radius * one.radius - along * along
     if rest < -NEAR * one.radius:
         return []
     half = sqrt(max(rest, 0.0)) / apart

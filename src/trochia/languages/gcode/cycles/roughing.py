@@ -152,7 +152,7 @@ def _crossing(piece: Segment, level: float, *, rising: bool) -> Vector:
         share = (level - piece.start[1]) / climb if abs(climb) > NEAR else 0.0
         share = min(max(share, 0.0), 1.0)
         return piece.start[0] + share * (piece.end[0] - piece.start[0]), level
-    across = sqrt(max(piece.radius**2 - (level - piece.centre[1]) ** 2, 0.0))
+    across = sqrt(max(piece.radius * piece.radius - (level - piece.centre[1]) * (level - piece.centre[1]), 0.0))
     points = [(piece.centre[0] + side * across, level) for side in (-1, 1)]
     held = [point for point in points if piece.holds(point)] or [piece.end if rising else piece.start]
     return held[-1 if rising else 0]
