@@ -14,6 +14,7 @@ import numpy as np
 
 from trochia.backends.live import Orders, Trouble, Watch
 from trochia.controller.feeder import Feeder
+from trochia.controller.placement import SEARCH, placement
 from trochia.controller.states import Event
 from trochia.controller.status import axes_of
 from trochia.errors import LocalProtocolError
@@ -34,7 +35,7 @@ class _NotFound(Exception):  # noqa: N818 - it is no error: it ends a script
 
 
 FURTHER = 1.1  #: of the travel is searched
-SEARCH, LATCH = 0.2, 0.1  #: of the axis' velocity, of the search's, where the file says nothing
+LATCH = 0.1  #: of the speed of the search, where the file says nothing
 
 
 class Move:
@@ -59,6 +60,10 @@ class Home:
                 raise LocalProtocolError(
                     f"{axis.name} is homed to its encoder's index, which this backend cannot catch"
                 )
+            wrong = next(placement(axis), None)
+            if wrong is not None:
+                raise LocalProtocolError(f"{axis.name} cannot be homed safely: {wrong}",
+                                         hint="Move the switch, or lower the speed of the search.")  # fmt: skip
         ordered = sorted(axes, key=lambda axis: axis.home.order if axis.home else 0)
         self._it = it
         self._script = self._all(ordered)

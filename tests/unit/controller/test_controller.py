@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from trochia.controller.journal import entries
+from trochia.machine.homing import Homing
 from trochia.messages import command as c
 
 if TYPE_CHECKING:
@@ -181,7 +182,7 @@ def test_homing_from_on_the_switch_drives_off_first(bench, homed_mill: Machine) 
 
 
 def test_homing_without_a_switch_to_be_found_is_an_alarm(bench, homed_mill: Machine) -> None:
-    x = replace(homed_mill.axes[0], minimum=-20.0, maximum=20.0)
+    x = replace(homed_mill.axes[0], minimum=-20.0, maximum=20.0, limit_minus=None, home=Homing(input="home-X"))
     b = bench(replace(homed_mill, axes=(x, *homed_mill.axes[1:]))).on()
     b.twin._switches.clear()
     b.ok(c.Home(axes=("X",)))
