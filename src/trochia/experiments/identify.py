@@ -100,9 +100,10 @@ def identify(
     excitation = through_train(axis, train, _HELD * (level + 0.5 * friction["viscous"] * cruise), cruise)
     response = by_multisine(axis, loop, bounds, excitation)
     train = two_mass(response, viscous=friction["viscous"])
+    train.numbers["viscous"] = friction.numbers["viscous"]  # with its uncertainty: the response only divides it
     progress("reversals")
     plant = _two_masses(axis, train, friction)
-    seen = reversals(axis, loop, bounds, speed=speed / 60.0, way=speed / 100.0)
+    seen = reversals(axis, loop, bounds, speed=speed / 60.0, way=speed / 60.0)
     gap = gap_by_reversal(
         plant, loop, seen.wanted, seen.measured, first=seen.first, coulomb=level, greatest=speed / 240.0
     )

@@ -29,8 +29,8 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 _STEP = 2e-5  # of the model [s]
-_GAPS = 12  # first guesses, from half a count on
-_SHARES = (0.3, 0.5, 0.7)
+_GAPS = 14  # first guesses, from half a count on
+_SHARES = (0.3, 0.4, 0.5, 0.6, 0.7)
 _TRIED = 3  # best guesses from which a fit starts
 
 
@@ -114,7 +114,7 @@ def _refined(solver: Callable[..., Any], left: Callable[[Array], Array], guess: 
     fit: Any = None
     for size in (3e-2, 5e-3):
         steps = np.array([size * max(1.0, 1.0 / max(guess[0], 1e-2)), size, size])
-        fit = solver(left, guess, diff_step=steps, x_scale=[max(guess[0], 1.0), 0.1, 0.1], bounds=bounds, max_nfev=12)
+        fit = solver(left, guess, diff_step=steps, x_scale=[max(guess[0], 1.0), 0.1, 0.1], bounds=bounds)
         guess = np.clip(fit.x, [1e-2, 0.5, 1e-3], [1.5 * most, 1.5, 1.0 - 1e-3])
     return fit
 
