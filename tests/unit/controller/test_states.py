@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from trochia.controller.states import MOVING, TABLE, Event, State, legal
@@ -48,3 +50,22 @@ def test_from_every_state_there_is_a_way_to_idle() -> None:
         for _ in State:
             seen |= {target for (at, _), target in TABLE.items() if at in seen}
         assert State.IDLE in seen
+
+
+def test_the_picture_in_the_documentation_is_that_of_the_table() -> None:
+    page = (Path(__file__).parents[3] / "docs" / "explanation" / "controller.md").read_text()
+    drawn = page.split("<!-- states: begin -->\n")[1].split("<!-- states: end -->")[0]
+    assert drawn == picture(), "write picture() into the page"
+
+
+def picture() -> str:
+    """Return the table as a page shows it: a row a state, what leads from it where."""
+    common = {"estop", "abort", Event.FAULT}
+    rows = ["| in | comes | to |", "|---|---|---|"]
+    for state in State:
+        found: dict[State, list[str]] = {}
+        for (at, event), target in TABLE.items():
+            if at is state and event not in common and (target is not state or event == "jog"):
+                found.setdefault(target, []).append(event if isinstance(event, str) else f"*{event.value.lower()}*")
+        rows += [f"| `{state.value}` | {', '.join(sorted(what))} | `{to.value}` |" for to, what in found.items()]
+    return "\n".join(rows) + "\n"
