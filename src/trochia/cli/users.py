@@ -58,6 +58,6 @@ def list_(*, users_file: Path | None) -> None:
 @click.argument("name")
 @users_option
 def remove(*, name: str, users_file: Path | None) -> None:
-    """Take a user out; one who is in stays in until the server ends."""
+    """Take a user out; who is in is out within a second."""
     if not _users(users_file).remove(name):
         raise click.ClickException(f"there is no user {name!r}")

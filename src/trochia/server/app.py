@@ -27,6 +27,15 @@ if TYPE_CHECKING:
     from trochia.server.desk import Desk
 
 
+LOOK = 1.0  #: between looks at the users file [s]
+
+
+async def _look_at_users(desk: Desk) -> None:
+    while True:
+        await asyncio.sleep(LOOK)
+        desk.look_at_users()
+
+
 def make_app(desk: Desk) -> Starlette:
     """Return the application that serves a desk."""
     routes = Routes(desk)
@@ -50,7 +59,9 @@ def make_app(desk: Desk) -> Starlette:
     @asynccontextmanager
     async def life(_app: Starlette) -> AsyncGenerator[None]:
         desk.hub.begin(asyncio.get_running_loop())
+        looking = asyncio.create_task(_look_at_users(desk))
         yield
+        looking.cancel()
         desk.hub.end()
 
     return Starlette(

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
+from trochia.errors import ConfigError
 from trochia.messages import Ack, SessionStatus, encode
 from trochia.messages.command import EmergencyStop, Jog, Load
 from trochia.server.audit import Audit
@@ -54,6 +55,7 @@ class Desk:
         self.audit = Audit(log)
         self.hub = Hub(runtime.status)
         self.samples = Samples(runtime.backend.machine)
+        self._users_changed = 0  # when, as far as has been looked at
         self._changed: set[Callable[[], None]] = set()  # who wants to know when control changes hands
         runtime.watchers.append(self._turned)
 
@@ -100,6 +102,21 @@ class Desk:
         self.sessions.close(session)
         self.audit.note("logout", session, session.address)
         self._control_changed()
+
+    def look_at_users(self) -> None:
+        """End the sessions of users who are gone, or have another role or password; when the file has changed."""
+        try:
+            changed = self.users.path.stat().st_mtime_ns
+            if changed == self._users_changed:
+                return
+            known = {user.name: user for user in self.users.all()}
+        except (OSError, ConfigError):
+            return  # nobody can log in now either; those who are in stay
+        self._users_changed = changed
+        for session in self.sessions.all():
+            user = known.get(session.user)
+            if user is None or (user.key, user.role) != (session.key, session.role):
+                self.leave(session)
 
     def join(self, changed: Callable[[], None]) -> None:
         """Call ``changed`` whenever control changes hands or a session ends."""

@@ -25,6 +25,8 @@ class Session:
     ----------
     number
         Counts logins, for the log.
+    key
+        Of the password it was opened by.
     address
         Where it came from.
     used
@@ -34,6 +36,7 @@ class Session:
     number: int
     user: str
     role: Role
+    key: bytes
     address: str
     used: float
     over: bool = False
@@ -58,7 +61,8 @@ class Sessions:
         self._sweep()
         self._count += 1
         token = secrets.token_urlsafe(32)
-        session = Session(number=self._count, user=user.name, role=user.role, address=address, used=self._clock())
+        session = Session(number=self._count, user=user.name, role=user.role, key=user.key, address=address,
+                          used=self._clock())  # fmt: skip
         self._open[_digest(token)] = session
         return token, session
 
@@ -69,6 +73,10 @@ class Sessions:
             return None
         session.used = self._clock()
         return session
+
+    def all(self) -> tuple[Session, ...]:
+        """Return those that are open."""
+        return tuple(session for session in self._open.values() if self.alive(session))
 
     def alive(self, session: Session) -> bool:
         """Whether a session has neither been closed nor grown too old."""

@@ -60,6 +60,18 @@ def test_wrong_passwords_are_slowed_and_logged(place) -> None:
     ]
 
 
+def test_who_is_removed_or_gets_another_password_is_out(place) -> None:
+    with place.client("ada") as ada, place.client("bob") as bob, place.client("eve") as eve:
+        ada.take()
+        place.desk.users.remove("ada")
+        place.desk.users.put("eve", "viewer", "another password")
+        for gone in (ada, eve):
+            with pytest.raises(LinkError, match="connection"):
+                gone.wait_until("running", timeout=20.0)
+        bob.take()  # nobody's any more
+        bob.command(Enable())
+
+
 def test_one_operator_at_a_time_with_take_over(place) -> None:
     with place.client("ada") as ada, place.client("bob") as bob, place.client("eve") as eve:
         with pytest.raises(Refused, match="nobody has control"):
