@@ -289,12 +289,35 @@ static void pin(trochia_course *course) {
     }
 }
 
+static int may_join(const trochia_course *course, int64_t d, double v) {
+    return trochia_leave_at(course, d, v).s >= course->stretches[d].start;
+}
+
+/* From even speed before place d, where a pass back ends, that is joined behind it: where budgets change, its arrests
+ * may end earlier than later ones do, and then only a lower speed is safe. */
+static void lower_before(trochia_course *course, int64_t d) {
+    trochia_stretch *stretches = course->stretches;
+    if (d == 0 || stretches[d - 1].last || trochia_is_pinned(&stretches[d - 1]))
+        return;
+    double low = 0.0, high = stretches[d - 1].ceiling * SUMMED;
+    if (may_join(course, d, high))
+        return;
+    for (int k = 0; k < 60 && high - low > EXACT * high; k++) {
+        double v = 0.5 * (low + high);
+        *(may_join(course, d, v) ? &low : &high) = v;
+    }
+    if (low > 0.0)
+        stretches[d - 1].ceiling = low / SUMMED;
+}
+
 void trochia_scurve_back(trochia_course *course) {
     double v = 0.0;
     pin(course);
     for (int64_t b = course->count; b > 0;) {
         trochia_stretch *node = &course->stretches[b];
         node->node_v = v;
-        b = next_node(course, pass_from(course, b, v, (b < course->count ? node->kick_in : 0.0) * v * v), &v);
+        int64_t d = pass_from(course, b, v, (b < course->count ? node->kick_in : 0.0) * v * v);
+        lower_before(course, d);
+        b = next_node(course, d, &v);
     }
 }

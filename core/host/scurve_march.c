@@ -154,9 +154,12 @@ static double next_high(const trochia_stretch *stretch, double v) {
     return sqrt(v * v + SHARE * (stretch->ceiling * stretch->ceiling - v * v));
 }
 
+/* Infinite where a falls to 0 before. */
 static double time_to_speed(double v, double a, double j, double to) {
-    double rise = to - v;
-    return rise > 0.0 ? 2.0 * rise / (a + sqrt(a * a + 2.0 * j * rise)) : 0.0;
+    double rise = to - v, square = a * a + 2.0 * j * rise;
+    if (!(square >= 0.0))
+        return INFINITY;
+    return rise > 0.0 ? 2.0 * rise / (a + sqrt(square)) : 0.0;
 }
 
 /* From v to `high` by that speed's budget, with a at the end no more than what comes next leaves; 0: no further. */
@@ -181,7 +184,7 @@ static int climb_to(const trochia_track *track, int64_t i, trochia_run *run, dou
     if (run->v < until && run->a > 0.0 && !leg(track, i, run, 0.0, (until - run->v) / run->a))
         return 0;
     if (drop > 0.0 && run->v < high) {
-        double time = trochia_smaller(drop / b.j, time_to_speed(run->v, after, 0.0, high));
+        double time = trochia_smaller(drop / b.j, time_to_speed(run->v, run->a, -b.j, high));
         if (!leg(track, i, run, -b.j, time))
             return 0;
     }
