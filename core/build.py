@@ -5,6 +5,7 @@ declarations; preprocessor lines and ``static inline`` bodies, from a line start
 column, are left out for cffi).  Out: one extension module for the stable ABI.
 """
 
+import hashlib
 import os
 import re
 from pathlib import Path
@@ -29,6 +30,12 @@ HEADERS = [
     "shared/segment.h",
     "host/ticks.h",
     "host/fit.h",
+    "host/cubic_steps.h",
+    "shared/protocol.h",
+    "shared/frame.h",
+    "shared/timeline.h",
+    "host/link.h",
+    "host/timeline.h",
     "host/gcode.h",
     "host/placement.h",
     "host/twin.h",
@@ -50,6 +57,11 @@ def declarations(text: str) -> str:
     return re.sub(r"^#.*(?:\\\n.*)*$", "", text, flags=re.MULTILINE)
 
 
+def schema() -> str:
+    """Return the hash of the link's schema, which the firmware is compiled with as well, as a C number."""
+    return f"0x{hashlib.sha256((CORE / 'shared/protocol.h').read_bytes()).hexdigest()[:8]}u"
+
+
 def make_builder() -> FFI:
     """Return the cffi builder of the core; TROCHIA_CFLAGS adds flags (the sanitiser build uses it)."""
     ffi = FFI()
@@ -64,6 +76,7 @@ def make_builder() -> FFI:
         include_dirs=[str(CORE)],
         # cffi's own glue is not ours to warn about
         extra_compile_args=[*FLAGS, "-Wno-conversion", *os.environ.get("TROCHIA_CFLAGS", "").split()],
+        define_macros=[("TROCHIA_SCHEMA", schema())],  # a chip with another one is refused
         extra_link_args=os.environ.get("TROCHIA_CFLAGS", "").split(),
         libraries=["m"],
         py_limited_api=True,

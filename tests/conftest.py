@@ -29,6 +29,9 @@ def _load(name):
     return module
 
 
+chip_program, board_image = _load("chip_fixtures").chip_program, _load("chip_fixtures").board_image
+
+
 @pytest.fixture(scope="session")
 def grbl_model():
     """The strict model of a GRBL 1.1 board, as a module."""

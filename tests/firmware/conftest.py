@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import fcntl
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,24 +20,6 @@ FIRMWARE = ROOT / "firmware"
 PARTS = {"stepping": "step_isr.S"}  # what an image takes from the firmware beside the shared headers
 
 
-def _make(folder: Path, *arguments: str) -> None:
-    """Run make, one at a time: several workers may ask for the same file."""
-    (ROOT / "build").mkdir(exist_ok=True)
-    with (ROOT / "build" / ".firmware.lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        done = subprocess.run(["make", "-s", "-C", folder, *arguments], capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-
-
-@pytest.fixture(scope="session")
-def chip_program() -> Path:
-    """The simulated chip as a program."""
-    if not Path("/usr/include/simavr/sim_avr.h").exists() or not Path("/usr/include/libelf.h").exists():
-        pytest.skip("libsimavr-dev and libelf-dev are not installed (packages-test.txt)")
-    _make(FIRMWARE / "sim")
-    return ROOT / "build" / "sim" / "chip"
-
-
 @pytest.fixture(scope="session")
 def image() -> Callable[[str], Path]:
     """Compiles an image of this folder by its name."""
@@ -46,7 +28,8 @@ def image() -> Callable[[str], Path]:
 
     def build(name: str) -> Path:
         images = Path(__file__).with_name("images")
-        _make(FIRMWARE / "avr", f"FROM={images}", f"WITH={PARTS.get(name, '')}", f"../../build/avr/{name}.elf")
+        make = sys.modules["chip_fixtures"].make
+        make(FIRMWARE / "avr", f"FROM={images}", f"WITH={PARTS.get(name, '')}", f"../../build/avr/{name}.elf")
         return ROOT / "build" / "avr" / f"{name}.elf"
 
     return build

@@ -48,6 +48,11 @@ class Queue:
         self._starts = np.zeros(0)  # of each row, stream time
         self._stops = np.zeros(1)
 
+    @property
+    def starts(self) -> NDArray[np.float64]:
+        """Stream time at which each row begins (rows,) [s]."""
+        return self._starts
+
     def _hold(self, held: Segments) -> None:
         """Hold these rows from ``start`` on."""
         self.held = held

@@ -1,0 +1,191 @@
+#include "link.h"
+
+#include <avr/interrupt.h>
+#include <string.h>
+
+#include "board.h"
+#include "motion.h"
+#include "registers.h"
+
+#define TROCHIA_FRAME_KNOWN
+enum { TROCHIA_FRAME = sizeof(trochia_span) + BOARD_MOTORS * sizeof(trochia_part) + 4 };
+#include "shared/frame.h"
+
+#ifndef BAUD
+#define BAUD 115200
+#endif
+
+enum { BYTES_A_TURN = 6, SEND = 64, RECEIVE = 128 };
+enum { SEND_ACK = 1, SEND_STATUS = 2, SEND_ANSWER = 4 };
+
+extern volatile uint16_t silent_slices;
+
+static volatile uint8_t received[RECEIVE], received_head;
+static uint8_t received_tail;
+static uint8_t sending[SEND];
+static volatile uint8_t send_next, send_end;
+static trochia_frame_in in;
+static uint8_t expected, greeted, session, wanted, reset_by;
+
+ISR(USART_RX_vect) {
+    uint8_t head = received_head, byte = UDR0;
+    received[head] = byte;
+    if (!byte)
+        motion_note();
+    received_head = (uint8_t)(head + 1) & (RECEIVE - 1);
+}
+
+ISR(USART_UDRE_vect) {
+    UDR0 = sending[send_next++];
+    if (send_next == send_end)
+        UCSR0B &= (uint8_t)~(1 << UDRIE0);
+}
+
+void link_setup(uint8_t reset_flags) {
+    reset_by = reset_flags;
+    UBRR0 = (F_CPU + BAUD * 4UL) / (8UL * BAUD) - 1;
+    UCSR0A = 1 << U2X0;
+    UCSR0B = 1 << RXEN0 | 1 << TXEN0 | 1 << RXCIE0;
+    trochia_frame_reset(&in);
+}
+
+/* Bytes of memory that nothing has written since reset (main.c paints it). */
+extern uint8_t _end;
+static uint16_t never_used(void) {
+    const uint8_t *at = &_end;
+    while (at < (uint8_t *)RAMEND && *at == 0xa5)
+        at++;
+    return (uint16_t)(at - &_end);
+}
+
+static void put(trochia_frame_out *out, const void *payload, uint8_t size) {
+    const uint8_t *bytes = payload;
+    for (uint8_t i = 0; i < size; i++)
+        trochia_frame_put(out, bytes[i]);
+}
+
+static void answer(trochia_frame_out *out) {
+    trochia_answer told = {.schema = SCHEMA,
+                           .clock = F_CPU,
+                           .room = BOARD_QUEUE,
+                           .free = never_used(),
+                           .motors = BOARD_MOTORS,
+                           .inputs = BOARD_INPUTS,
+                           .outputs = BOARD_OUTPUTS,
+                           .reset = reset_by};
+    memcpy(told.board, board_name, sizeof told.board);
+    trochia_frame_begin(out, sending, 0, TROCHIA_ANSWER);
+    put(out, &told, sizeof told);
+}
+
+static void send(void) {
+    trochia_frame_out out;
+    if (wanted & SEND_ANSWER) {
+        wanted &= (uint8_t)~SEND_ANSWER;
+        answer(&out);
+    } else if (wanted & SEND_STATUS) {
+        trochia_status status;
+        wanted = 0;
+        motion_tell(&status);
+        status.expected = expected;
+        trochia_frame_begin(&out, sending, 0, TROCHIA_STATUS);
+        motion_work();
+        put(&out, &status, sizeof status);
+    } else {
+        trochia_ack ack = {.expected = expected, .epoch = motion_epoch(), .room = motion_room()};
+        wanted = 0;
+        trochia_frame_begin(&out, sending, 0, TROCHIA_ACK);
+        put(&out, &ack, sizeof ack);
+    }
+    send_end = trochia_frame_end(&out);
+    send_next = 0;
+    UCSR0B |= 1 << UDRIE0;
+}
+
+static void hello(const uint8_t *payload) {
+    trochia_hello order;
+    memcpy(&order, payload, sizeof order);
+    wanted |= SEND_ANSWER;
+    if (order.schema != SCHEMA)
+        return; /* its answer tells the host why */
+    if (greeted && order.session == session)
+        return;
+    session = order.session;
+    greeted = 1;
+    expected = 0;
+    motion_greet(&order);
+}
+
+/* An order that came when it was its turn. */
+static void obey(uint8_t type, const uint8_t *payload, uint8_t size) {
+    switch (type) {
+    case TROCHIA_SPAN:
+        motion_span(payload, size);
+        break;
+    case TROCHIA_BEGIN:
+        motion_begin((const trochia_begin *)payload);
+        break;
+    case TROCHIA_GO:
+        motion_go();
+        break;
+    case TROCHIA_CUT:
+        motion_cut((const trochia_cut *)payload);
+        break;
+    case TROCHIA_SWITCH:
+        motion_switch((const trochia_put *)payload);
+        break;
+    case TROCHIA_WATCH:
+        motion_watch((const trochia_look *)payload);
+        break;
+    case TROCHIA_BRAKE:
+        motion_brake(TROCHIA_ORDERED);
+        break;
+    default:
+        break;
+    }
+}
+
+static void loose(uint8_t type, const uint8_t *payload, uint8_t size) {
+    if (type == TROCHIA_HELLO && size == sizeof(trochia_hello))
+        hello(payload);
+    if (!greeted)
+        return;
+    if (type == TROCHIA_HALT && size == 1) {
+        motion_stop(TROCHIA_ORDERED);
+        if (payload[0])
+            motion_switch(&(const trochia_put){.enable = 0, .lit = 0, .mask = 255, .outputs = 0});
+    }
+    if (type == TROCHIA_HALT || type == TROCHIA_ASK)
+        wanted |= SEND_STATUS;
+}
+
+static void take(void) {
+    uint8_t type = in.bytes[1], size = (uint8_t)(in.length - 2);
+    if (type >= TROCHIA_LOOSE) {
+        loose(type, in.bytes + 2, size);
+    } else if (greeted) {
+        wanted |= SEND_ACK;
+        if (in.bytes[0] == expected) {
+            expected++;
+            obey(type, in.bytes + 2, size);
+        }
+    }
+    silent_slices = 0;
+}
+
+void link_work(void) {
+    for (uint8_t i = 0; i < BYTES_A_TURN && received_tail != received_head; i++) {
+        uint8_t event = trochia_frame_take(&in, received[received_tail]);
+        received_tail = (uint8_t)(received_tail + 1) & (RECEIVE - 1);
+        if (event == TROCHIA_NOTHING)
+            continue;
+        if (event == TROCHIA_WHOLE)
+            take();
+        else if (greeted)
+            wanted |= SEND_ACK;
+        trochia_frame_reset(&in);
+        break;
+    }
+    if (wanted && !(UCSR0B & 1 << UDRIE0))
+        send();
+}

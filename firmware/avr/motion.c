@@ -1,0 +1,408 @@
+#include "motion_parts.h"
+
+#include <string.h>
+
+enum { LEAD = 1600 /* ticks from GO to the first slice */ };
+
+uint8_t step_ring[256] __attribute__((section(".ring,\"aw\",@nobits;")));
+volatile uint8_t step_head, step_on;
+trochia_timeline line;
+slice_begin slices[SLICES];
+uint16_t silence_most;
+
+static uint8_t state, cause, epoch, enabled, underway, end_put;
+static uint16_t next_number;
+static uint32_t caught_at, span_duration;
+
+void motion_setup(void) {
+    for (uint8_t i = 0; i < BOARD_MOTORS; i++)
+        line.motors[i].pin = board_pins[i];
+    trochia_timeline_begin(&line);
+    TCCR1B = 1 << CS10;
+    TIMSK1 = 1 << TOIE1;
+}
+
+static volatile uint16_t overflows;
+volatile uint16_t noted_at, noted_since;
+volatile uint8_t noted_slice;
+
+ISR(TIMER1_OVF_vect) {
+    overflows++;
+}
+
+uint32_t motion_clock(void) {
+    uint16_t low, high;
+    ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+        low = TCNT1;
+        high = overflows;
+        if (TIFR1 & 1 << TOV1 && low < 32768u)
+            high++;
+    }
+    return (uint32_t)high << 16 | low;
+}
+
+static void interrupt_off(void) {
+    TIMSK1 &= (uint8_t)~(1 << OCIE1A);
+}
+
+/* Steps of a motor that are in the ring but not yet at the pins. */
+static void take_back(int32_t *position) {
+    uint8_t tail, pins, count, head = line.head, back;
+    ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+        tail = isr_tail;
+        pins = isr_pins;
+        count = isr_count;
+        back = directions;
+    }
+    if (!step_on)
+        count = 0;
+    for (;;) {
+        for (uint8_t i = 0; i < BOARD_MOTORS; i++) {
+            if (count && pins & board_pins[i])
+                position[i] += back & 1 << i ? count : -(int16_t)count;
+        }
+        if (tail == head)
+            return;
+        pins = step_ring[(uint8_t)(tail + 2)];
+        count = step_ring[(uint8_t)(tail + 3)];
+        if (count == 0) {
+            if (pins == TROCHIA_ACT)
+                back ^= step_ring[(uint8_t)(tail + 4)];
+            tail = (uint8_t)(tail + 8);
+        } else {
+            tail = (uint8_t)(tail + (count > 1 ? 8 : 4));
+        }
+    }
+}
+
+static uint32_t stream_at(uint8_t slice, uint16_t after) {
+    const slice_begin *begin = &slices[slice & (SLICES - 1)];
+    if (after > TROCHIA_SLICE)
+        after = TROCHIA_SLICE;
+    return begin->stream + ((uint32_t)after * begin->rate >> 15);
+}
+
+/* Stream time run through, and the rate, at an instant. */
+static uint32_t executed(uint8_t slice, uint16_t after, uint16_t *rate) {
+    *rate = 0;
+    if (!underway || ended)
+        return line.stream;
+    if (after >= 0x8000) /* before the first slice */
+        after = 0;
+    /* smoothed: the next slice's is not always known yet, the last one's is */
+    uint16_t before = slices[(slice - 1) & (SLICES - 1)].rate, begin = slices[slice & (SLICES - 1)].rate;
+    if (after > TROCHIA_SLICE)
+        after = TROCHIA_SLICE;
+    *rate = (uint16_t)((int32_t)before + ((int32_t)((int32_t)begin - before) * after >> 14));
+    uint32_t at = stream_at(slice, after);
+    if (end_put && (int32_t)(at - line.stream) > 0)
+        at = line.stream;
+    return at;
+}
+
+static uint32_t executed_now(void) {
+    uint8_t slice;
+    uint16_t after, rate;
+    ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+        slice = slice_done;
+        after = (uint16_t)(TCNT1 - slice_since);
+    }
+    return executed(slice, after, &rate);
+}
+
+static void finish(uint8_t to, uint8_t why) {
+    ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+        span_power = 0;
+        beam_put();
+    }
+    underway = 0;
+    state = to;
+    if (!cause)
+        cause = why;
+    queue_clear();
+}
+
+void motion_stop(uint8_t why) {
+    uint32_t at = executed_now();
+    int32_t position[BOARD_MOTORS];
+    interrupt_off();
+    span_power = 0;
+    board_beam(0);
+    for (uint8_t i = 0; i < BOARD_MOTORS; i++)
+        position[i] = line.motors[i].position;
+    take_back(position);
+    for (uint8_t i = 0; i < BOARD_MOTORS; i++)
+        line.motors[i].position = position[i];
+    line.stream = at;
+    line.head = step_head = isr_tail;
+    line.backwards = directions;
+    line.loaded = 0;
+    line.length = 0;
+    GPIOR0 = 0;
+    step_on = 0;
+    isr_count = 0;
+    if (state == TROCHIA_RUNNING || state == TROCHIA_LOADING || why != TROCHIA_ORDERED) {
+        cause = cause && state == TROCHIA_STOPPED ? cause : why;
+        state = TROCHIA_STOPPED;
+    }
+    underway = 0;
+    queue_clear();
+}
+
+void motion_brake(uint8_t why) {
+    if (state == TROCHIA_LOADING) {
+        finish(TROCHIA_STOPPED, why);
+        return;
+    }
+    if (state != TROCHIA_RUNNING || line.brake)
+        return;
+    line.brake = 1;
+    cause = why;
+    ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+        beam_put();
+    }
+}
+
+void motion_begin(const trochia_begin *order) {
+    if (underway)
+        return;
+    epoch = order->epoch;
+    queue_clear();
+    trochia_timeline_begin(&line);
+    next_number = 0;
+    cause = TROCHIA_NO_CAUSE;
+    state = TROCHIA_LOADING;
+    caught = 0;
+}
+
+void motion_span(const uint8_t *payload, uint8_t size) {
+    trochia_span span;
+    if (state != TROCHIA_LOADING && state != TROCHIA_RUNNING)
+        return;
+    if (caught || line.brake)
+        return; /* sent before the host knew */
+    memcpy(&span, payload, sizeof span);
+    if (size < sizeof span || span.number != next_number || !queue_put(payload, size)) {
+        motion_brake(TROCHIA_BAD_SPAN);
+        return;
+    }
+    next_number++;
+    line.hand += trochia_hand(span.slew, span.duration);
+    line.rest = span.flags & TROCHIA_AT_REST;
+}
+
+/* The span under way ends earlier; returns whether that is still to come. */
+static uint8_t cut_loaded(uint32_t duration) {
+    uint32_t less = span_duration - duration;
+    if (duration >= span_duration || line.left <= less || line.left - less <= line.length)
+        return 0;
+    line.left -= less;
+    span_duration = duration;
+    return 1;
+}
+
+void motion_cut(const trochia_cut *order) {
+    uint8_t found;
+    if (state != TROCHIA_RUNNING && state != TROCHIA_LOADING)
+        return;
+    queue_cut(order->number, order->duration, &found);
+    next_number = (uint16_t)(order->number + (order->duration != 0));
+    line.rest = order->flags & TROCHIA_AT_REST;
+    if (!found) {
+        queue_clear();
+        if (order->duration)
+            found = line.loaded && line.number == order->number && cut_loaded(order->duration);
+        else
+            found = line.loaded && (uint16_t)(line.number + 1) == order->number;
+    }
+    line.hand = queue_hand();
+    if (!found)
+        motion_brake(TROCHIA_LATE_CUT);
+}
+
+void motion_switch(const trochia_put *order) {
+    if (order->enable != 255) {
+        enabled = order->enable != 0;
+        board_enable(enabled);
+        if (!enabled && underway)
+            motion_stop(TROCHIA_ORDERED);
+    }
+    ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+        if (order->lit != 255)
+            span_lit = order->lit;
+        outputs = (uint8_t)((outputs & ~order->mask) | (order->outputs & order->mask));
+        board_outputs(outputs);
+        beam_put();
+    }
+}
+
+void motion_watch(const trochia_look *order) {
+    ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+        watched = *order;
+        caught = caught_new = 0;
+        watch_look();
+    }
+}
+
+void motion_greet(const trochia_hello *hello) {
+    motion_brake(TROCHIA_ORDERED);
+    silence_most = hello->silence;
+    estop_inputs = hello->estop;
+}
+
+/* Takes the next span up; returns whether there was one. */
+static uint8_t take_up(void) {
+    trochia_span span;
+    trochia_part part;
+    uint32_t start = line.loaded ? line.left : 0;
+    uint8_t back = line.backwards;
+    if (!queue_get((uint8_t *)&span, sizeof span))
+        return 0;
+    trochia_timeline_load(&line, &span);
+    span_duration = span.duration;
+    for (uint8_t i = 0; i < BOARD_MOTORS; i++) {
+        if (!(span.motors & 1 << i))
+            continue;
+        queue_get((uint8_t *)&part, sizeof part);
+        trochia_timeline_part(&line, i, &part, start);
+        if (part.steps.flags & TROCHIA_SEGMENT_BACKWARDS)
+            back = (uint8_t)(back | 1 << i);
+        else
+            back = (uint8_t)(back & ~(1 << i));
+    }
+    const uint8_t four[4] = {(uint8_t)(back ^ line.backwards), span.power, span.flags, span.outputs};
+    trochia_timeline_special(&line, (uint16_t)start, TROCHIA_ACT, four);
+    line.backwards = back;
+    return 1;
+}
+
+static void note_slice(void) {
+    slice_begin *begin = &slices[line.marked & (SLICES - 1)];
+    begin->stream = line.stream;
+    begin->rate = line.rate;
+}
+
+static void kick(void) {
+    ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+        uint16_t at = (uint16_t)(TCNT1 + LEAD);
+        isr_pins = 0;
+        isr_count = 1;
+        isr_at_low = (uint8_t)at;
+        isr_at_high = (uint8_t)(at >> 8);
+        slice_since = at;
+        OCR1A = at;
+        TIFR1 = 1 << OCF1A;
+        step_on = 1;
+        TIMSK1 |= 1 << OCIE1A;
+    }
+}
+
+void motion_go(void) {
+    if (state != TROCHIA_LOADING)
+        return;
+    state = TROCHIA_RUNNING;
+    underway = 2; /* the interrupt is still to be started */
+    end_put = ended = 0;
+    silent_slices = 0;
+    slice_done = line.marked;
+    note_slice();
+    slices[(line.marked - 1) & (SLICES - 1)].rate = line.rate;
+}
+
+static void fill(void) {
+    while (!end_put) {
+        if (line.length == 0 && (uint8_t)(line.marked - slice_done) >= TROCHIA_AHEAD - 1)
+            return;
+        uint8_t told = trochia_timeline_fill(&line);
+        slices[(told == TROCHIA_SLICED ? line.marked - 1 : line.marked) & (SLICES - 1)].rate = line.rate;
+        if (told == TROCHIA_SLICED) {
+            note_slice();
+            continue;
+        }
+        if (told == TROCHIA_FULL && trochia_timeline_space(&line) < 128)
+            return; /* there is enough for a while: the link's turn */
+        if (told == TROCHIA_FULL)
+            continue;
+        if (told == TROCHIA_NEED && trochia_timeline_space(&line) >= 20 && take_up())
+            continue;
+        if (trochia_timeline_space(&line) < 20)
+            return;
+        if (told == TROCHIA_NEED && !line.rest && !line.brake && !cause)
+            cause = TROCHIA_LOW;
+        if (told == TROCHIA_ENDED && !cause)
+            cause = TROCHIA_LOW;
+        trochia_timeline_end(&line);
+        end_put = 1;
+    }
+}
+
+void motion_work(void) {
+    if (estop_seen) {
+        estop_seen = 0;
+        motion_stop(TROCHIA_ESTOP);
+        enabled = 0;
+    }
+    if (caught_new) {
+        caught_new = 0;
+        caught_at = stream_at(caught_slice, caught_after);
+        motion_brake(TROCHIA_CAUGHT);
+    }
+    if (!underway)
+        return;
+    if (silence_most && silent_slices > silence_most)
+        motion_brake(TROCHIA_SILENCE);
+    fill();
+    if (underway == 2) {
+        underway = 1;
+        kick();
+    } else if (!step_on) {
+        if (ended)
+            finish(cause ? TROCHIA_STOPPED : TROCHIA_IDLE, TROCHIA_NO_CAUSE);
+        else
+            motion_stop(TROCHIA_MISSED);
+    }
+}
+
+uint16_t motion_room(void) {
+    return queue_free();
+}
+
+uint8_t motion_epoch(void) {
+    return epoch;
+}
+
+uint8_t motion_runs(void) {
+    return underway;
+}
+
+void motion_tell(trochia_status *told) {
+    int32_t position[BOARD_MOTORS];
+    for (uint8_t i = 0; i < BOARD_MOTORS; i++)
+        position[i] = line.motors[i].position;
+    take_back(position);
+    for (uint8_t i = 0; i < TROCHIA_MOTORS; i++)
+        told->position[i] = i < BOARD_MOTORS ? position[i] : 0;
+    uint8_t slice;
+    uint16_t at, since, late;
+    ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+        at = noted_at;
+        since = noted_since;
+        slice = noted_slice;
+    }
+    told->clock = motion_clock();
+    late = (uint16_t)((uint16_t)told->clock - at);
+    told->clock -= late;
+    told->executed = executed(slice, (uint16_t)(at - since), &told->rate);
+    told->epoch = epoch;
+    told->room = queue_free();
+    told->caught_at = caught_at;
+    told->number = line.number;
+    told->state = state;
+    told->cause = cause;
+    told->inputs = board_inputs();
+    told->outputs = outputs;
+    told->beam = TCCR2A ? OCR2A : 0;
+    told->enabled = enabled;
+    told->caught = caught;
+    told->worst = 0;
+}

@@ -1,0 +1,63 @@
+/* What the files of motion share. */
+#ifndef TROCHIA_MOTION_PARTS_H
+#define TROCHIA_MOTION_PARTS_H
+
+#include <avr/interrupt.h>
+#include <util/atomic.h>
+
+#include "board.h"
+#include "motion.h"
+#include "registers.h"
+
+extern uint8_t step_ring[256]; /* begins at a multiple of 256: line_isr.S relies on it */
+extern volatile uint8_t step_head, step_on;
+
+#define TROCHIA_TIMELINE_MOTORS BOARD_MOTORS
+#define TROCHIA_RING(line, i) (step_ring[(uint8_t)(i)])
+#define TROCHIA_TAIL(line) (isr_tail)
+#define TROCHIA_PUBLISH(line, i)                                                                                       \
+    do {                                                                                                               \
+        __asm__ volatile("" ::: "memory");                                                                             \
+        (line)->head = step_head = (uint8_t)(i);                                                                       \
+    } while (0)
+#include "shared/timeline.h"
+
+/* Stream time and rate at the start of the last few slices, by the slice's number. */
+typedef struct {
+    uint32_t stream;
+    uint16_t rate;
+} slice_begin;
+
+enum { SLICES = 8 };
+
+extern trochia_timeline line;
+extern slice_begin slices[SLICES];
+
+/* Written by interrupts. */
+extern volatile uint8_t slice_done;   /* slices that have ended */
+extern volatile uint16_t slice_since; /* when the last of them did [timer 1] */
+extern volatile uint8_t directions;   /* motors that go backwards */
+extern volatile uint8_t span_power, span_lit, outputs, silence_over;
+extern volatile uint8_t caught, caught_slice, caught_new, estop_seen;
+extern volatile uint16_t caught_after, silent_slices;
+extern volatile uint8_t ended; /* END has been reached */
+
+extern trochia_look watched;
+extern uint8_t estop_inputs;
+extern uint16_t silence_most;
+
+/* Looks at watched inputs; with interrupts off. */
+void watch_look(void);
+
+/* Lights the beam if it may be lit now; with interrupts off. */
+void beam_put(void);
+
+/* The queue, bytes of spans (queue.c). */
+void queue_clear(void);
+uint16_t queue_free(void);
+uint8_t queue_put(const uint8_t *payload, uint8_t size);
+uint8_t queue_get(uint8_t *bytes, uint8_t size); /* returns 0 where it is empty */
+void queue_cut(uint16_t number, uint32_t duration, uint8_t *found);
+uint32_t queue_hand(void);
+
+#endif

@@ -1,0 +1,84 @@
+/* Spans that wait, as the bytes they came in. */
+#include "motion_parts.h"
+
+static uint8_t bytes[BOARD_QUEUE];
+static uint16_t head, used;
+
+void queue_clear(void) {
+    head = used = 0;
+}
+
+uint16_t queue_free(void) {
+    return (uint16_t)(BOARD_QUEUE - used);
+}
+
+static uint16_t place(uint16_t offset) {
+    uint16_t at = (uint16_t)(head + offset);
+    return at >= BOARD_QUEUE ? (uint16_t)(at - BOARD_QUEUE) : at;
+}
+
+uint8_t queue_put(const uint8_t *payload, uint8_t size) {
+    if (size > queue_free())
+        return 0;
+    uint16_t at = place(used);
+    for (uint8_t i = 0; i < size; i++) {
+        bytes[at] = payload[i];
+        at = at + 1 == BOARD_QUEUE ? 0 : at + 1;
+    }
+    used = (uint16_t)(used + size);
+    return 1;
+}
+
+static void read(uint16_t offset, uint8_t *to, uint8_t size) {
+    uint16_t at = place(offset);
+    for (uint8_t i = 0; i < size; i++) {
+        to[i] = bytes[at];
+        at = at + 1 == BOARD_QUEUE ? 0 : at + 1;
+    }
+}
+
+uint8_t queue_get(uint8_t *to, uint8_t size) {
+    if (used < size)
+        return 0;
+    read(0, to, size);
+    head = place(size);
+    used = (uint16_t)(used - size);
+    return 1;
+}
+
+static uint8_t size_of(const trochia_span *span) {
+    uint8_t size = sizeof *span;
+    for (uint8_t motors = span->motors; motors; motors &= (uint8_t)(motors - 1))
+        size = (uint8_t)(size + sizeof(trochia_part));
+    return size;
+}
+
+/* Ends a span earlier, and drops those after it. */
+void queue_cut(uint16_t number, uint32_t duration, uint8_t *found) {
+    trochia_span span;
+    *found = 0;
+    for (uint16_t offset = 0; offset < used; offset = (uint16_t)(offset + size_of(&span))) {
+        read(offset, (uint8_t *)&span, sizeof span);
+        if (span.number != number)
+            continue;
+        *found = 1;
+        if (duration == 0 || duration > span.duration) {
+            used = offset;
+            return;
+        }
+        for (uint8_t i = 0; i < 4; i++)
+            bytes[place((uint16_t)(offset + i))] = (uint8_t)(duration >> 8 * i);
+        used = (uint16_t)(offset + size_of(&span));
+        return;
+    }
+}
+
+uint32_t queue_hand(void) {
+    trochia_span span;
+    uint32_t hand = 0;
+    for (uint16_t offset = 0; offset < used; offset = (uint16_t)(offset + size_of(&span))) {
+        read(offset, (uint8_t *)&span, sizeof span);
+        hand += trochia_hand(span.slew, span.duration);
+    }
+    return hand;
+}

@@ -1,0 +1,17 @@
+/* Registers that belong to the step interrupt (line_isr.S); all C is compiled so that it leaves them alone. */
+#ifndef TROCHIA_REGISTERS_H
+#define TROCHIA_REGISTERS_H
+
+#include <stdint.h>
+
+register uint8_t isr_pins __asm__("r2");     /* of the entry under way */
+register uint8_t isr_fraction __asm__("r3"); /* of a tick, carried */
+register uint8_t isr_add __asm__("r4");      /* interval: fraction, ticks */
+register uint8_t isr_low __asm__("r5");
+register uint8_t isr_high __asm__("r6");
+register uint8_t isr_count __asm__("r7");   /* pulses to come, the armed one included */
+register uint8_t isr_at_low __asm__("r8");  /* compare value */
+register uint8_t isr_at_high __asm__("r9"); /* r10: SREG; r11, r12: for the interrupt's sums */
+register uint8_t isr_tail __asm__("r13");   /* of the ring */
+
+#endif

@@ -1,0 +1,40 @@
+"""Inputs of a board by the names its machine has for them.
+
+In: the last status.  Out: whether each is active; on the simulated chip they can be set.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from trochia.backends.avr.live_avr import LiveAvr
+
+
+class Inputs:
+    """Inputs of the board by name, as the last status has them; on the simulated chip they can be set."""
+
+    def __init__(self, backend: LiveAvr) -> None:
+        self._backend = backend
+
+    def levels(self) -> dict[str, bool]:
+        """Return whether each is active."""
+        backend = self._backend
+        return {name: self[name] for name in backend.wiring.inputs}
+
+    def __getitem__(self, name: str) -> bool:
+        """Whether an input is active."""
+        bit, active = self._backend.wiring.inputs[name]
+        return (int(self._backend.status["inputs"]) >> bit & 1) == active
+
+    def __setitem__(self, name: str, value: bool) -> None:
+        """Make an input active or not."""
+        active = self._backend.wiring.inputs[name][1]
+        self.put(name, level=active if value else 1 - active)
+
+    def put(self, name: str, *, level: int) -> None:
+        """Put an input's pin to a level."""
+        backend = self._backend
+        if backend.transport.stride:
+            bit = backend.wiring.inputs[name][0]
+            backend.transport.set_input(backend.board.inputs[bit], level)

@@ -1,0 +1,135 @@
+"""How bytes get to a chip and back: a serial port, or the simulated chip.
+
+A transport is told the time and given bytes; it gives back the bytes that have come by then.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Protocol
+
+import serial
+
+from trochia.backends.simulated_chip import SimulatedChip
+from trochia.errors import LinkError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+class Transport(Protocol):
+    """Bytes to and from one chip.
+
+    Attributes
+    ----------
+    baud
+        Of the line.
+    stride
+        How far :meth:`exchange` goes at once, at most [s]; 0 where time passes by itself.
+    """
+
+    baud: int
+    stride: float
+
+    def exchange(self, data: bytes, now: float) -> bytes:
+        """Send bytes, let time go on to ``now``, and return the bytes that have come.
+
+        Raises
+        ------
+        LinkError
+            When the other side is gone.
+        """
+        ...
+
+    def rebase(self, now: float) -> None:
+        """Call the present time ``now``."""
+        ...
+
+    def set_input(self, pin: str, level: int) -> None:
+        """Put an input to a level, where somebody can."""
+        ...
+
+    def close(self) -> None:
+        """Let go of it."""
+        ...
+
+
+class ChipTransport:
+    """An image on the simulated chip; its clock is the caller's."""
+
+    stride = 0.0005
+
+    def __init__(self, program: Path, image: Path, *, baud: int = 1_000_000, mcu: str = "atmega328p") -> None:
+        self.baud = baud
+        self.chip = SimulatedChip(program, image, mcu=mcu)
+        self.edges: list[object] | None = None
+        self._base: float | None = None
+        self._at = 0.0
+
+    def exchange(self, data: bytes, now: float) -> bytes:
+        """See :class:`Transport`."""
+        if self._base is None:
+            self._base = now - 0.01  # the chip was reset a moment ago
+        if data:
+            self.chip.feed(data)
+        self._at = now
+        run = self.chip.run_until(round((now - self._base) * self.chip.frequency))
+        if run.state not in {"runs", "sleeps"}:
+            raise LinkError(f"the simulated chip has {run.state}")
+        if self.edges is not None:
+            self.edges.append(run.events)
+        return run.sent
+
+    def rebase(self, now: float) -> None:
+        """See :class:`Transport`."""
+        self._base = (self._base or 0.0) + now - self._at
+
+    def set_input(self, pin: str, level: int) -> None:
+        """Put an input like ``C1`` to a level."""
+        self.chip.set_pin(pin, level)
+
+    def close(self) -> None:
+        """End the simulation."""
+        self.chip.close()
+
+
+class SerialTransport:
+    """A board on a serial port; time passes by itself.
+
+    Raises
+    ------
+    LinkError
+        When the port cannot be opened, or another program has it.
+    """
+
+    stride = 0.0
+
+    def __init__(self, port: str, *, baud: int = 115_200) -> None:
+        self.baud = baud
+        self.name = port
+        try:
+            self._port = serial.serial_for_url(port, baud, timeout=0, write_timeout=0.5, exclusive=True)
+        except (serial.SerialException, OSError, ValueError) as error:
+            raise LinkError(
+                f"the port {port} cannot be opened: {error}",
+                hint="`trochia boards` lists the ports; another program may have it open.",
+            ) from None
+
+    def exchange(self, data: bytes, now: float) -> bytes:  # noqa: ARG002 - time passes by itself
+        """See :class:`Transport`."""
+        try:
+            if data:
+                self._port.write(data)
+            return bytes(self._port.read(4096))
+        except (serial.SerialException, OSError) as error:
+            raise LinkError(f"the board on {self.name} is gone: {error}", hint="Is the cable in?") from None
+
+    def rebase(self, now: float) -> None:
+        """See :class:`Transport`; time is what it is."""
+
+    def set_input(self, pin: str, level: int) -> None:  # noqa: ARG002 - real inputs are not ours to set
+        """Refuse: real inputs are not ours to set."""
+        raise LinkError(f"nobody sets the input {pin} of a real board")
+
+    def close(self) -> None:
+        """Close the port."""
+        self._port.close()

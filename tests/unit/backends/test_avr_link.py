@@ -1,0 +1,106 @@
+"""The link's session without any I/O: what is dropped, flipped, doubled or cut arrives once and in order, or not."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from trochia.backends.avr.session import Greeted, Session
+from trochia.errors import LocalProtocolError, VersionMismatch
+from trochia.kernels.link import ACK, ANSWER, SCHEMA, TYPES, FrameReader, frame
+
+FAULTS = 2_000
+
+
+class Chip:
+    """The other end, as the protocol asks: takes the order it expects, and says which that is."""
+
+    def __init__(self, schema: int = SCHEMA):
+        self.reader, self.expected, self.taken, self.session, self.schema = FrameReader(), 0, [], -1, schema
+
+    def receive(self, data: bytes) -> bytes:
+        answers = b""
+        for got in self.reader.feed(data):
+            if got.kind == TYPES["hello"]:
+                if got.payload[9] != self.session:
+                    self.session, self.expected = got.payload[9], 0
+                answer = np.zeros((), ANSWER)
+                answer["schema"], answer["room"] = self.schema, 1000
+                answers += frame(0, TYPES["answer"], answer.tobytes())
+                continue
+            if 0 <= got.kind < TYPES["hello"] and got.number == self.expected:
+                self.taken.append(got.payload)
+                self.expected = (self.expected + 1) & 255
+            ack = np.zeros((), ACK)
+            ack["expected"], ack["room"] = self.expected, 1000
+            answers += frame(0, TYPES["ack"], ack.tobytes())
+        return answers
+
+
+def spoil(data: bytes, rng: np.random.Generator, rate: float) -> tuple[bytes, int]:
+    """Drops, flips, doubles bytes, or cuts what is left; returns how often as well."""
+    kept, faults = bytearray(), 0
+    for byte in data:
+        kind = rng.random() / rate
+        if kind >= 1.0:
+            kept.append(byte)
+            continue
+        faults += 1
+        if kind < 0.3:
+            kept.append(byte ^ (1 << int(rng.integers(8))))
+        elif kind < 0.6:
+            kept += bytes([byte, byte])
+        elif kind < 0.65:
+            return bytes(kept), faults
+    return bytes(kept), faults
+
+
+def test_orders_arrive_once_and_in_order_whatever_the_line_does():
+    rng = np.random.default_rng(8)
+    host, chip, now, faults = Session(1_000_000), Chip(), 0.0, 0
+    host.greet(now)
+    sent: list[bytes] = []
+    while faults < FAULTS or host.waiting:
+        rate = 0.01 if faults < FAULTS else 1e-9
+        there, some = spoil(host.outgoing(now), rng, rate)
+        back, more = spoil(chip.receive(there), rng, rate)
+        faults += some + more
+        now += 0.002
+        host.receive(back, now)
+        if host.state in {"open", "lost"} and faults < FAULTS and host.waiting < 6:
+            sent.append(rng.bytes(int(rng.integers(1, 90))))
+            host.order("switch", sent[-1])
+    assert len(sent) > 300
+    assert chip.taken == sent
+    assert host.repeated
+    assert host.broken
+
+
+def test_another_schema_is_refused_with_both_named():
+    host, chip = Session(), Chip(schema=0x12345678)
+    host.greet(0.0)
+    with pytest.raises(VersionMismatch, match=f"12345678.*{SCHEMA:08x}"):
+        host.receive(chip.receive(host.outgoing(0.0)), 0.01)
+    with pytest.raises(LocalProtocolError, match="refused"):
+        host.order("go")
+
+
+def test_a_greeting_is_answered_once():
+    host, chip = Session(), Chip()
+    host.greet(0.0)
+    first = chip.receive(host.outgoing(0.0))
+    again = chip.receive(host.outgoing(1.0))
+    assert again  # it was asked for again
+    events = host.receive(first + again, 1.1)
+    assert [type(event) for event in events] == [Greeted]
+
+
+def test_silence_is_told():
+    host, chip = Session(), Chip()
+    host.greet(0.0)
+    host.receive(chip.receive(host.outgoing(0.0)), 0.01)
+    assert host.state == "open"
+    assert host.receive(b"", 0.4) == []
+    (lost,) = host.receive(b"", 0.6)
+    assert lost.silence == pytest.approx(0.59)
+    assert host.state == "lost"
