@@ -15,7 +15,9 @@ from trochia.cli.tables import show_plan, show_verdict
 from trochia.errors import UnitError
 
 if TYPE_CHECKING:
+    from trochia.analysis.contouring import CircleTest
     from trochia.languages.gcode import Reading
+    from trochia.recorder import Recording
 
 
 def _period(_context: click.Context, _parameter: click.Parameter, value: str | None) -> float | None:
@@ -32,15 +34,26 @@ def _period(_context: click.Context, _parameter: click.Parameter, value: str | N
     raise click.BadParameter(f'expected a time or rate above zero with its unit, like "1 ms" or "2 kHz", not {value!r}')
 
 
+def _circle(recording: Recording, output: Path) -> CircleTest:
+    """Return the circle test of a recording, its picture beside the report."""
+    from trochia.analysis.contouring import circle_test  # noqa: PLC0415 - asked for only
+    from trochia.analysis.contouring.picture import circle_picture  # noqa: PLC0415
+
+    test = circle_test(recording)
+    circle_picture(output / "circle.png", test)
+    return test
+
+
 @click.command()
 @options.common
 @click.option("-o", "--output", type=click.Path(file_okay=False, path_type=Path), default=Path("out"),
               show_default=True, help="Folder for recording, report and picture.")  # fmt: skip
+@click.option("--circle", is_flag=True, help="Tell what became of the program's longest circle in X and Y.")
 @click.option("--rate", "period", callback=_period, metavar="TIME|FREQUENCY",
               help="Sampling of the recording; else the servo period, longer for long programs.")  # fmt: skip
 def command(
     *, program: str, machine_name: str, place: dict[str, float], profile: str | None, as_json: bool, reading: Reading,
-    output: Path, period: float | None,
+    output: Path, circle: bool, period: float | None,
 ) -> None:  # fmt: skip
     """Run a program on the digital twin: recording and report.
 
@@ -60,12 +73,17 @@ def command(
         sys.exit(1)
     with Progress() as progress:
         proof = prove(job.verdict, job.text, output, period=period, progress=progress)
+    test = _circle(proof.recording, output) if circle else None
     if as_json:
-        options.print_json(proof.figures())
+        options.print_json(proof.figures() | ({} if test is None else {"circle": test.figures()}))
         sys.exit(0 if proof.verdict.ok else 1)
     show_plan(job.verdict.plan)
     contour = proof.contour_error
     click.echo(f"contour error at most {contour.peak * 1000:.2f} µm, rms {contour.rms * 1000:.2f} µm")
+    if test is not None:
+        low, high = (1000 * deviation for deviation in test.radial_deviation)
+        click.echo(f"circle   radius {test.radius:.4g} mm: circular deviation {1000 * test.circular_deviation:.2f} µm, "
+                   f"radial deviation {low:.2f} to {high:.2f} µm, {output / 'circle.png'}")  # fmt: skip
     lost = {joint: n for joint, n in proof.lost_steps.items() if n}
     if lost:
         click.echo("lost steps: " + ", ".join(f"{joint} {n}" for joint, n in lost.items()))

@@ -78,6 +78,17 @@ def test_simulate_writes_report_picture_and_recording(tmp_path: Path):
     assert 1 / 4096 < proof["following_error"]["X"]["peak"] < 1000 / 4096
 
 
+def test_simulate_tells_of_a_circle(tmp_path: Path):
+    program = tmp_path / "round.ngc"
+    program.write_text("G21 G90 G17\nM3 S1\nF1200\nG0 X10 Y0\nG2 X10 Y0 I-10 J0\nG2 X10 Y0 I-10 J0\nM2\n")
+    done = trochia("simulate", str(program), "-m", "xy-table", "-o", str(tmp_path / "out"), "--circle", "--json")
+    test = json.loads(done.stdout)["circle"]
+    assert test["radius_mm"] == pytest.approx(10, abs=1e-3)
+    assert 0 < test["circular_deviation_mm"] < 0.1
+    assert {round(spike["angle_deg"]) for spike in test["spikes"]} <= {0, 90, 180, 270, 360}
+    assert (tmp_path / "out" / "circle.png").read_bytes().startswith(b"\x89PNG")
+
+
 @pytest.mark.parametrize(
     ("args", "stdin", "code", "words"),
     [
