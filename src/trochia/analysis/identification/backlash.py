@@ -96,16 +96,24 @@ def gap_by_reversal(
     if fit < 0.5:
         raise RecordingError(f"no gap explains these reversals (fit {fit:.2f})",
                              hint="Was the axis at rest at the start, and the loop the one that ran?")  # fmt: skip
+    return _estimate(best, rest, {"gap": scale, "coulomb": coulomb, "coulomb_share": 1.0}, fit)
+
+
+def _estimate(best: Any, rest: Array, unit: dict[str, float], fit: float) -> Estimate:  # noqa: ANN401 - scipy's
+    """Return the estimate of a fit whose parameters are in these units."""
     variance = float(rest @ rest) / max(len(rest) - 3, 1)
     sigma = np.sqrt(np.diag(np.linalg.pinv(best.jac.T @ best.jac)) * variance)
-    unit = {"gap": scale, "coulomb": coulomb, "coulomb_share": 1.0}
     names = {"gap": "rad", "coulomb": "N·m", "coulomb_share": ""}
     return Estimate(
         model="backlash",
-        numbers={name: Number(float(x) * unit[name], float(s) * unit[name], names[name])
-                 for name, x, s in zip(unit, best.x, sigma, strict=True)},
-        rms=float(np.sqrt(np.mean(rest**2))) * scale, fit=fit, samples=len(rest),
-    )  # fmt: skip
+        numbers={
+            name: Number(float(x) * unit[name], float(s) * unit[name], names[name])
+            for name, x, s in zip(unit, best.x, sigma, strict=True)
+        },
+        rms=float(np.sqrt(np.mean(rest**2))) * unit["gap"],
+        fit=fit,
+        samples=len(rest),
+    )
 
 
 def _refined(solver: Callable[..., Any], left: Callable[[Array], Array], guess: Array, most: float) -> Any:  # noqa: ANN401 - scipy's
