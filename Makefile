@@ -87,6 +87,7 @@ golden: setup-test
 # G-code programs and PLANS random programs to plan, from SOAK_SEED on, and some of them against rs274
 soak: setup-test
 	$(BIN)/python -m pytest -q --hypothesis-profile=soak tests/properties tests/oracle
+	$(BIN)/python tests/soak/identify_axes.py --count 10 --seed 2026
 	$(BIN)/python tests/soak/fuzz_gcode.py --count $(SOAK) --seed $(SOAK_SEED) --jobs $(JOBS)
 	$(BIN)/python tests/soak/plans.py --count $(PLANS) --seed $(SOAK_SEED)
 	$(BIN)/python tests/soak/holds.py --count 10000 --seed $(SOAK_SEED)
