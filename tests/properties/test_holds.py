@@ -12,7 +12,7 @@ import pytest
 if TYPE_CHECKING:
     from types import ModuleType
 
-SEEDS = range(1, 25)
+SEEDS = range(1, 15)
 
 
 @pytest.fixture(scope="module")
