@@ -86,8 +86,8 @@ class _Board:
         self._backend.close()
 
     def connect(self) -> None:
-        """Wait until it has told its settings."""
-        self._wait(lambda report: report.doing is not Doing.CONNECTING and bool(report.position))
+        """Wait until it has told its settings, where it stands and where its work zero lies."""
+        self._wait(lambda report: report.doing is not Doing.CONNECTING and bool(report.position and report.origin))
         self._stop_at_faults()
 
     def compare(self, machine: Machine) -> None:

@@ -171,6 +171,46 @@ def test_a_program_stop_waits_for_the_sender(mill: Plant) -> None:
     assert mill.place()["X"] == pytest.approx(9.0)
 
 
+def test_numbered_lines_are_told_by_their_number(mill: Plant) -> None:
+    mill.say("N10 G1 X5 F600\nN20 X10\nN30 X15\n", 1.0)
+    assert "|Ln:20|" in mill.status() or "|Ln:10|" in mill.status()
+
+
+def test_a_hold_between_two_texts_keeps_the_second_from_beginning(mill: Plant) -> None:
+    mill.say("G0 X1\n!", 1.0)
+    assert mill.status().startswith("<Hold:0")
+    assert mill.place()["X"] == 0.0
+    mill.say("~", 1.0)
+    assert mill.place()["X"] == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("stop", [b"!", b"\x18"], ids=["hold", "reset"])
+@pytest.mark.parametrize(
+    "what", ["G1 X90 F3000\nY50\nX0\nY0\n" * 3, "$J=G91 X30 F6000\n$J=G91 Y30 F6000\n"], ids=["lines", "jogs"]
+)
+def test_a_stop_at_any_instant_stops_for_good(plants: Callable[..., Plant], stop: bytes, what: str) -> None:
+    plant = plants()
+    for turns in range(14):  # as near to the start of motion as turns are
+        plant.say(what, 0.005 * turns)
+        plant.say(stop, 0.6)
+        stood = plant.place()
+        plant.run(0.4)
+        assert plant.place() == stood, turns
+        plant.say(b"\x18", 0.6)
+        assert plant.status().startswith("<Idle"), turns
+        assert plant.say("G90\n", 0.1)[-1] == "ok"
+        plant.say("G0 X0 Y0\n", 3.0)
+        assert plant.place()["X"] == pytest.approx(0.0, abs=1e-9), turns
+
+
+def test_more_lines_than_may_wait_are_answered_later(mill: Plant, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("trochia.gateways.grbl.queue.MOST", 3)
+    answers = mill.say("G0 X1\nX2\nX3\nX4\nX5\n", 0.02)
+    assert answers == ["ok"] * 3
+    assert mill.say("", 3.0) == ["ok"] * 2
+    assert mill.place()["X"] == pytest.approx(5.0)
+
+
 def test_a_sender_that_is_gone_leaves_the_machine_held(mill: Plant) -> None:
     mill.say("G1 X50 F1000\n", 0.5)
     mill.door.gone = True

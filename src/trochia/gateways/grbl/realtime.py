@@ -52,8 +52,8 @@ class Realtime:
         if session.status.state == "jogging":
             session.drop_jogs()
             session.ask(c.JogStop())
-        elif session.busy and session.status.state in {"idle", "running", "stepping", "resuming", "probing"}:
-            session.held = session.status.state == "idle"
+        elif session.busy or session.unread:
+            session.held = session.status.state in {"idle", "off"}  # what waits does not begin
             session.ask(c.Hold())
 
     def _override(self, byte: int) -> None:

@@ -57,6 +57,7 @@ class Session:
         self._waiting: list[bytes] = []  # lines for which there is no room yet
         self._pending: tuple[Future[Ack], Callable[[Ack], None]] | None = None
         self._homing = self._resetting = self._alarmed = False
+        self._planned = False  # the text is loaded, and may begin
         self._started = self._returned = False
         self._now = 0.0
         if runtime.status.state == "off":
@@ -114,6 +115,11 @@ class Session:
         """Whether something waits or is under way."""
         return bool(self.queue.items) or self._pending is not None or self.text is not None or self._homing
 
+    @property
+    def unread(self) -> bool:
+        """Whether lines have come that have not been read."""
+        return bool(self._waiting)
+
     # -- what real-time bytes ask
 
     def report(self) -> None:
@@ -129,7 +135,7 @@ class Session:
         self._waiting.clear()
         self._line.clear()
         self.held = self.checking = False
-        self._homing = False
+        self._homing = self._planned = False
         self.modes = Modes()
         if "abort" in self.status.legal:
             self.ask(c.Abort())
@@ -209,10 +215,23 @@ class Session:
         state = self.status.state
         if state != "jogging" and not self.queue.items and self._pending is None:
             self.jog_ends = None
-        if self.text is not None and self._pending is None and state in {"idle", "off", "alarm", "estop"}:
+        if (
+            self.text is not None
+            and self._pending is None
+            and not self._planned
+            and state in {"idle", "off", "alarm", "estop"}
+        ):
             self.text = None
         if state in {"alarm", "estop"} and not self._alarmed and self.status.alarms:
             self._alarm(ALARMS.get(self.status.alarms[-1].cause, OTHER), self.status.alarms[-1].message)
+        if self.held and state in {"running", "stepping", "resuming", "probing"}:
+            self.ask(c.Hold())  # it began while the hold was on its way
+        elif self.held and state == "jogging":
+            self.held = False
+            self.drop_jogs()
+            self.ask(c.JogStop())
+        if self._resetting and "abort" in self.status.legal:
+            self.ask(c.Abort())  # it began while the reset was on its way
         if self._resetting and state in {"idle", "off", "alarm", "estop"} and self._pending is None:
             self._resetting = False
             self.text = None
@@ -225,6 +244,7 @@ class Session:
 
     def _alarm(self, number: int, text: str) -> None:
         self._alarmed = True
+        self._planned = False
         self.queue.items.clear()
         self._waiting.clear()
         self._homing = self._started = False
@@ -233,7 +253,12 @@ class Session:
 
     def _begin(self) -> None:
         """Begin what is next, when the machine is free."""
-        free = self.status.state == "idle" and self._pending is None and self.text is None and not self.held
+        free = self.status.state == "idle" and self._pending is None and not self.held
+        if free and self._planned and not self._resetting:
+            self._planned = False
+            self._send(c.Run(), self._checked)
+            return
+        free = free and self.text is None
         if not free or self._resetting or self._homing is not isinstance(self.queue.items[0] if self.queue.items
                                                                         else None, Home):  # fmt: skip
             return
@@ -258,9 +283,8 @@ class Session:
         self._pending = (self.runtime.send(command), then)
 
     def _loaded(self, ack: Ack) -> None:
-        if ack.ok and not self._resetting:
-            self._send(c.Run(), self._checked)
-        else:
+        self._planned = ack.ok and not (self._resetting or self._alarmed)
+        if not ack.ok:
             self._checked(ack)
 
     def _checked(self, ack: Ack) -> None:
