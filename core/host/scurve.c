@@ -94,7 +94,7 @@ static void put_even(trochia_writer *w, double from, double to, double v, int64_
         return;
     while (i + 1 < w->course.count && stretches[i + 1].start <= from + TROCHIA_SAME_PLACE(from))
         i++;
-    trochia_leg leg = {from, to, v, 0.0, 0.0, (to - from) / v, (uint64_t)i};
+    trochia_leg leg = {from, to, v, 0.0, 0.0, (to - from) / v, 0.0, 0.0, (uint64_t)i};
     put_leg(w, &leg);
 }
 

@@ -33,6 +33,7 @@ typedef struct {
 typedef struct {
     double from, to; /* s */
     double v, a, j, duration;
+    double end_v, end_s; /* of the pass back: how fast, and where, an arrest from its end would end */
     uint64_t stretch;
 } trochia_leg;
 

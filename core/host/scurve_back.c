@@ -8,7 +8,10 @@
 
 static const double SUMMED = 1.0 + 1e-12;
 static const double EXACT = 1e-14;
-static const double NEAR = 1e-14; /* speeds that are the same */
+static const double NEAR = 1e-12;         /* speeds that are the same */
+static const double ROUNDED = 1.0 + 1e-9; /* above a ceiling by what searches leave */
+enum { FARTHEST = 64 };                   /* stretches looked back over */
+static const double BELOW = 1.0 - 1e-5;
 static const double STILL = 1e-7; /* nearer to the ceiling than this part, an even speed is kept */
 
 static trochia_track track_of(const trochia_course *course, int64_t by) {
@@ -107,6 +110,23 @@ static int64_t stretch_for(const trochia_stretch *stretches, int64_t low, int64_
     return low;
 }
 
+double trochia_room_at(const trochia_course *course, const trochia_arrest *arrest) {
+    const trochia_stretch *stretches = course->stretches;
+    double v = arrest->v;
+    if (stretches[arrest->stretch].birth == TROCHIA_NO_BIRTH)
+        return INFINITY;
+    int64_t b = (int64_t)stretches[arrest->stretch].birth, death = (int64_t)stretches[b].death;
+    if (v > stretches[b].birth_v && v <= stretches[death].peak_v) {
+        int64_t k = stretch_for(stretches, death, b, v);
+        double to_v = stretches[k].peak_v, to_s = stretches[k].peak_s;
+        double from_v = k + 1 == b ? stretches[b].birth_v : stretches[k + 1].peak_v;
+        double from_s = k + 1 == b ? stretches[b].birth_s : stretches[k + 1].peak_s;
+        if (arrest->s > from_s)
+            return (v - from_v) / (to_v - from_v) * (to_s - from_s) + from_s - arrest->s;
+    }
+    return trochia_leave_at(course, arrest->stretch, v).s - arrest->s;
+}
+
 trochia_leave trochia_leave_at(const trochia_course *course, int64_t i, double v) {
     const trochia_stretch *stretches = course->stretches;
     trochia_leave leave = {.s = INFINITY};
@@ -135,8 +155,7 @@ trochia_leave trochia_leave_at(const trochia_course *course, int64_t i, double v
     leave.tau = stretches[k].climb;
     for (uint64_t n = 0; n < stretches[k].climbs; n++) {
         const trochia_leg *leg = &course->legs[stretches[k].leg + n];
-        trochia_arrest end = arrest_on(&back, leg, leg->duration);
-        double to = end.margin >= 0.0 ? end.v : stretches[k].peak_v;
+        double to = leg->end_v;
         if (to >= v) {
             double s = leave.s;
             leave.tau = passed + leave_on(&back, leg, from, to, v, &s);
@@ -148,9 +167,25 @@ trochia_leave trochia_leave_at(const trochia_course *course, int64_t i, double v
     }
     const trochia_leg *last = &course->legs[stretches[k].leg];
     if (stretches[k].climbs > 0)
-        last += stretches[k].climbs - 1;
-    leave.s = arrest_on(&back, last, stretches[k].climbs > 0 ? last->duration : 0.0).s;
+        leave.s = last[stretches[k].climbs - 1].end_s;
+    else
+        leave.s = arrest_on(&back, last, 0.0).s;
     return leave;
+}
+
+/* Where each leg's arrest would end: what joins ask for. */
+static void mark(const trochia_course *course, const trochia_stretch *stretch, const trochia_arrest *last) {
+    trochia_track back = track_of(course, -1);
+    trochia_leg *legs = course->legs + stretch->leg;
+    if (stretch->leg + stretch->legs > course->room)
+        return;
+    for (uint64_t n = 0; n < stretch->climbs; n++) {
+        trochia_arrest end = *last;
+        if (n + 1 < stretch->climbs)
+            end = arrest_on(&back, &legs[n], legs[n].duration);
+        legs[n].end_v = end.margin >= 0.0 ? end.v : stretch->peak_v;
+        legs[n].end_s = end.s;
+    }
 }
 
 static void keep(trochia_course *course, int64_t i, const trochia_run *run) {
@@ -163,36 +198,83 @@ static void keep(trochia_course *course, int64_t i, const trochia_run *run) {
             course->legs[course->made] = run->legs[k];
 }
 
+/* Motion back in time that has come to the end of stretch i. */
+typedef struct {
+    int64_t i;
+    double v, a;
+    int closing; /* a is only brought to 0 */
+} trochia_mover;
+
+/* Through stretch m->i. */
+static void pass_stretch(trochia_course *course, int64_t b, trochia_mover *m) {
+    trochia_stretch *stretches = course->stretches, *here = &stretches[m->i];
+    trochia_track back = track_of(course, -1);
+    trochia_run run;
+    trochia_arrest arrest;
+    int joins, barrier = 0;
+    if (m->closing || (m->a == 0.0 && m->v >= here->ceiling * (1.0 - STILL)))
+        run = (trochia_run){.v = m->v, .a = m->a, .rem = here->length};
+    else
+        trochia_climb(&back, m->i, m->v, m->a, &run);
+    double time = trochia_search(&back, NULL, m->i, &run, &arrest, &joins, &barrier);
+    /* a later stretch's ceiling, once come to, forbids more until a is 0 */
+    barrier |= time < run.time && arrest.stretch < m->i && arrest.v > stretches[arrest.stretch].ceiling * BELOW;
+    trochia_run_out(&back, m->i, &run, time);
+    here->climb = time;
+    here->birth = (uint64_t)b;
+    here->peak_v = run.a > 0.0 ? arrest.v : run.v;
+    here->peak_s = run.a > 0.0 ? arrest.s : here->start;
+    keep(course, m->i, &run);
+    mark(course, here, &arrest);
+    m->v = run.v;
+    m->a = run.a;
+    m->closing = (m->closing || barrier) && m->a > 0.0;
+    if (m->i > 0 && m->a == 0.0 && m->v > here[-1].ceiling && m->v <= here[-1].ceiling * ROUNDED)
+        m->v = here[-1].ceiling;
+}
+
+/* Motion that ends in stretch m->i, while an arrest from a stretch k before it would have got farther: by that instead,
+ * from the start of k on. */
+static int turn_back(trochia_course *course, int64_t b, trochia_mover *m) {
+    const trochia_stretch *stretches = course->stretches;
+    double end = stretches[m->i].start;
+    if (course->made > course->room)
+        return 0;
+    for (int64_t k = m->i + 1; k < b && k <= m->i + FARTHEST; k++) {
+        if (!(stretches[k].peak_s < end - TROCHIA_SAME_PLACE(end)) || stretches[k].legs == 0)
+            continue;
+        const trochia_leg *last = &course->legs[stretches[k].leg + stretches[k].legs - 1];
+        double a = last->a + last->duration * last->j;
+        if (!(a > 0.0))
+            continue;
+        course->made = stretches[k].leg + stretches[k].legs;
+        *m = (trochia_mover){k - 1, trochia_speed_after(last->v, last->a, last->j, last->duration), a, 1};
+        return 1;
+    }
+    return 0;
+}
+
 /* From the node at the start of stretch b back to where the ceiling is below. */
 static int64_t pass_from(trochia_course *course, int64_t b, double v, double a) {
     trochia_stretch *stretches = course->stretches;
     trochia_track back = track_of(course, -1);
-    int closing = 0;
     trochia_arrest birth = trochia_arrest_from(&back, b - 1, stretches[b - 1].length, v, a, NULL, 0, NULL);
+    trochia_mover m = {b - 1, v, a, 0};
+    int64_t ended = b;
     stretches[b].birth_v = a > 0.0 ? birth.v : v;
     stretches[b].birth_s = a > 0.0 ? birth.s : stretches[b].start;
-    for (int64_t i = b - 1;; i--) {
-        trochia_run run;
-        trochia_arrest arrest;
-        int joins, barrier = 0;
-        if (closing || (a == 0.0 && v >= stretches[i].ceiling * (1.0 - STILL)))
-            run = (trochia_run){.v = v, .a = a, .rem = stretches[i].length};
-        else
-            trochia_climb(&back, i, v, a, &run);
-        double time = trochia_search(&back, NULL, i, &run, &arrest, &joins, &barrier);
-        trochia_run_out(&back, i, &run, time);
-        stretches[i].climb = time;
-        stretches[i].birth = (uint64_t)b;
-        stretches[i].peak_v = run.a > 0.0 ? arrest.v : run.v;
-        stretches[i].peak_s = run.a > 0.0 ? arrest.s : stretches[i].start;
-        keep(course, i, &run);
-        v = run.v;
-        a = run.a;
-        closing = (closing || barrier) && a > 0.0;
-        if (trochia_is_barrier(&back, i) || v > stretches[i - 1].ceiling * SUMMED) {
-            stretches[b].death = (uint64_t)i;
-            return i;
+    for (;; m.i--) {
+        pass_stretch(course, b, &m);
+        if (!trochia_is_barrier(&back, m.i) && m.v <= stretches[m.i - 1].ceiling * SUMMED)
+            continue;
+        int64_t i = m.i;
+        if (i < ended && turn_back(course, b, &m)) {
+            ended = i; /* only ever farther back */
+            m.i++;
+            continue;
         }
+        stretches[b].death = (uint64_t)i;
+        return i;
     }
 }
 

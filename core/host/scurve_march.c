@@ -11,28 +11,29 @@ static const double ENDED = 1e-13;   /* less than this part of it is left of a: 
 static const double CLOSE = 1e-9;    /* nearer to the ceiling than this part, speed stays */
 static const double SHARE = 0.35;    /* of what v^2 is below the ceiling, taken at one go where budgets fall with v */
 static const double LITTLE_A = 0.75; /* a budget that falls no lower until the ceiling is taken there at once */
+static const double TINY = 1e-300;
+static const double CLOSE_TIME = 1e-9;
 enum { STEPS = 7 };
 
 static double place(const trochia_track *track, int64_t i, double rem) {
     return trochia_exit(track, i) - (double)track->by * rem;
 }
 
-/* The way is convex in time, so Newton's method from the right never overshoots. */
+/* The way is convex in time, so Newton's method overshoots at most once, from the left; then it nears from the right.
+ * It begins at what an even a would take. */
 double trochia_time_over(double v, double a, double j, double rem, double most) {
-    double t = most;
-    if (v > 0.0)
-        t = trochia_smaller(t, rem / v);
-    if (a > 0.0 && j >= 0.0)
-        t = trochia_smaller(t, sqrt(2.0 * rem / a));
-    if (j > 0.0)
+    double root = sqrt(v * v + 2.0 * a * rem), t = most;
+    if (v + root > 0.0)
+        t = trochia_smaller(t, 2.0 * rem / (v + root));
+    if (j > 0.0 && !(j * t * t < v + root))
         t = trochia_smaller(t, cbrt(6.0 * rem / j));
     for (int k = 0; k < 50; k++) {
         double step = (trochia_way_after(v, a, j, t) - rem) / trochia_speed_after(v, a, j, t);
-        if (!(step > 1e-16 * t))
+        t = trochia_smaller(t - step, most);
+        if (!(fabs(step) > CLOSE_TIME * t)) /* the next step would be the square of that */
             break;
-        t -= step;
     }
-    return trochia_smaller(t, most);
+    return t;
 }
 
 static void note(const trochia_track *track, int64_t i, double rem, double after, double v, double a, double j,
@@ -40,22 +41,30 @@ static void note(const trochia_track *track, int64_t i, double rem, double after
     if (!legs || !(duration > 0.0))
         return;
     if (*made < room)
-        legs[*made] = (trochia_leg){place(track, i, rem), place(track, i, after), v, a, j, duration, (uint64_t)i};
+        legs[*made] =
+            (trochia_leg){place(track, i, rem), place(track, i, after), v, a, j, duration, 0.0, 0.0, (uint64_t)i};
     ++*made;
+}
+
+/* Whether nothing but an end of acceleration is possible in stretch i, at speed v: what comes next is passed slower. */
+static int is_end(const trochia_track *track, int64_t i, double v) {
+    return trochia_is_barrier(track, i) || v > track->stretches[i + track->by].ceiling * SUMMED;
 }
 
 /* One leg of an arrest: its jerk, by what the highest speed it may get to leaves, and its duration: to a = 0, to that
  * speed, or to the stretch's end (then `rem` becomes 0).  Both are continuous in the state, so that an arrest's end is.
  */
 static double arrest_leg(const trochia_stretch *stretch, double *rem, double v, double a, double *high, double *time) {
-    double free = stretch->free, reach = sqrt(v * v + 2.0 * a * *rem);
+    double free = stretch->free, reach = INFINITY;
     *time = 0.0;
+    if (free < INFINITY)
+        reach = sqrt(v * v + 2.0 * a * *rem);
     *high = reach;
     if (free < INFINITY)
         *high = trochia_smaller(reach, v < free ? sqrt(v * v + SHARE * (free * free - v * v)) : v);
-    double jerk = trochia_jerk_left(stretch, *high, a);
+    double jerk = free < INFINITY ? trochia_jerk_left(stretch, *high, a) : 1.0 / stretch->along_j;
     if (!(jerk > 0.0))
-        return 0.0;
+        return jerk;
     double rise = *high - v, root = a * a - 2.0 * jerk * rise;
     *time = *high < reach && root > 0.0 ? 2.0 * rise / (a + sqrt(root)) : a / jerk;
     double way = trochia_way_after(v, a, -jerk, *time);
@@ -77,12 +86,13 @@ trochia_arrest trochia_arrest_from(const trochia_track *track, int64_t i, double
         double high, time, before = rem, jerk = arrest_leg(stretch, &rem, v, a, &high, &time);
         /* a falls at least as fast as what the rising speed leaves for it: then it need only be kept at the start */
         int falls = jerk * stretch->along_a >= 2.0 * stretch->bend_a * high * a;
-        double most = trochia_acceleration_left(stretch, falls ? v : high);
+        double most =
+            stretch->free < INFINITY ? trochia_acceleration_left(stretch, falls ? v : high) : 1.0 / stretch->along_a;
         if (most * SUMMED < a)
             out.margin = most / a - 1.0;
         out.margin = trochia_smaller(out.margin, stretch->ceiling * slack / v - 1.0);
         if (!(jerk > 0.0))
-            out.margin = -1.0;
+            out.margin = trochia_smaller(out.margin, trochia_smaller(jerk * stretch->along_j, -TINY));
         if (out.margin < 0.0)
             return out;
         note(track, i, before, rem, v, a, -jerk, time, legs, room, made);
@@ -94,18 +104,22 @@ trochia_arrest trochia_arrest_from(const trochia_track *track, int64_t i, double
         out.v = v;
         out.s = place(track, i, rem);
         out.stretch = i;
-        if (out.margin < 0.0 || a == 0.0)
+        if (out.margin < 0.0)
             return out;
+        if (a == 0.0) {
+            if (is_end(track, i, v))
+                out.margin = trochia_smaller(out.margin, rem / stretch->length);
+            return out;
+        }
         if (rem > 0.0)
             continue;
-        if (trochia_is_barrier(track, i)) {
+        if (is_end(track, i, v)) { /* beyond it, as if the stretch went on */
             out.barrier = 1;
-            out.margin = -a / first;
+            out.margin = -a / jerk * (v + a * a / (3.0 * jerk)) / stretch->length;
             return out;
         }
         i += track->by;
         rem = track->stretches[i].length;
-        out.barrier = v > track->stretches[i].ceiling * SUMMED;
     }
     return out;
 }
@@ -121,7 +135,7 @@ static int leg(const trochia_track *track, int64_t i, trochia_run *run, double j
         rem = 0.0;
     }
     run->legs[run->count++] =
-        (trochia_leg){place(track, i, run->rem), place(track, i, rem), run->v, run->a, j, time, (uint64_t)i};
+        (trochia_leg){place(track, i, run->rem), place(track, i, rem), run->v, run->a, j, time, 0.0, 0.0, (uint64_t)i};
     run->v = trochia_speed_after(run->v, run->a, j, time);
     run->a = trochia_larger(run->a + j * time, 0.0);
     run->rem = rem;

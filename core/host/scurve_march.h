@@ -125,6 +125,10 @@ typedef struct {
 /* How the pass back over stretch i may be joined at speed v. */
 trochia_leave trochia_leave_at(const trochia_course *course, int64_t i, double v);
 
+/* How far before the place where the pass back is joined an arrest ends: exactly where both lie in one stretch, else
+ * its sign, and nearly. */
+double trochia_room_at(const trochia_course *course, const trochia_arrest *arrest);
+
 /* The arrest from a time of a run.  Where a pass back is given: `joins` is set where it would end beyond it. */
 trochia_arrest trochia_probe(const trochia_track *track, const trochia_course *course, int64_t i,
                              const trochia_run *run, double time, int *joins);

@@ -3,8 +3,10 @@
 
 /* Exact enough, on lines and where the path bends: part of a run's time, and of a margin. */
 static const double EXACT[2] = {1e-13, 1e-8};
-static const double NEAR[2] = {1e-11, 1e-7};
-enum { PARTS = 4 };
+static const double NEAR[2] = {1e-10, 1e-7};
+/* Places of a leg that has been cut, where arrests are tried. */
+static const double PLACES[] = {0.5, 0.8, 0.95, 0.99};
+enum { PARTS = 1, PROBED = 4, MOST = 60 };
 
 trochia_arrest trochia_probe(const trochia_track *track, const trochia_course *course, int64_t i,
                              const trochia_run *run, double time, int *joins) {
@@ -13,13 +15,9 @@ trochia_arrest trochia_probe(const trochia_track *track, const trochia_course *c
     trochia_arrest arrest = trochia_arrest_from(track, i, at.rem, at.v, at.a, NULL, 0, NULL);
     *joins = 0;
     if (arrest.margin >= 0.0 && course) {
-        trochia_leave leave = trochia_leave_at(course, arrest.stretch, arrest.v);
-        if (leave.s < arrest.s) {
-            *joins = 1;
-            arrest.margin = leave.s > -INFINITY ? (leave.s - arrest.s) / track->stretches[i].length : -1.0;
-            arrest.margin = trochia_larger(arrest.margin, -1.0);
-        } else
-            arrest.margin = trochia_smaller(arrest.margin, (leave.s - arrest.s) / track->stretches[i].length);
+        double room = trochia_room_at(course, &arrest) / track->stretches[i].length;
+        *joins = room < 0.0;
+        arrest.margin = *joins ? trochia_larger(room, -1.0) : trochia_smaller(arrest.margin, room);
     }
     return arrest;
 }
@@ -43,6 +41,70 @@ static double first_failure(const trochia_track *track, int64_t i, const trochia
     return run->time;
 }
 
+/* Nears the last moment between one that leaves an arrest and one that does not. */
+typedef struct {
+    double low, high;
+    trochia_arrest arrest; /* from low */
+    int joins, barrier;    /* what forbids high */
+} trochia_bracket;
+
+static void narrow(const trochia_track *track, const trochia_course *course, int64_t i, const trochia_run *run,
+                   double over, trochia_bracket *b) {
+    int unused, stayed = 0, bends = track->stretches[i].free < INFINITY;
+    b->arrest = trochia_probe(track, course, i, run, b->low, &unused);
+    double under = trochia_smaller(trochia_larger(b->arrest.margin, 0.0), 1.0);
+    for (int k = 0; k < MOST && b->high - b->low > EXACT[bends] * run->time; k++) {
+        double time = b->low + under * (b->high - b->low) / (under - over);
+        if (k % 6 == 5 || !(time > b->low) || !(time < b->high))
+            time = 0.5 * (b->low + b->high);
+        if (!(time > b->low) || !(time < b->high))
+            break;
+        int joining;
+        trochia_arrest found = trochia_probe(track, course, i, run, time, &joining);
+        if (found.margin >= 0.0) { /* Anderson and Bjorck's form of the false position */
+            double part = 1.0 - trochia_smaller(found.margin, 1.0) / under;
+            over *= stayed == 1 ? (part > 0.0 ? part : 0.5) : 1.0;
+            stayed = 1;
+            b->low = time;
+            b->arrest = found;
+            under = trochia_smaller(found.margin, 1.0);
+            if (under <= NEAR[bends])
+                break;
+        } else {
+            double part = 1.0 - found.margin / over;
+            under *= stayed == -1 ? (part > 0.0 ? part : 0.5) : 1.0;
+            stayed = -1;
+            b->high = time;
+            over = found.margin;
+            b->joins = joining;
+            b->barrier = found.barrier;
+        }
+    }
+}
+
+/* Where the leg that a moment cuts begins. */
+static double begin_of(const trochia_run *run, double time) {
+    double begin = 0.0;
+    for (int k = 0; k < run->count && begin + run->legs[k].duration < time; k++)
+        begin += run->legs[k].duration;
+    return begin;
+}
+
+/* A moment of the leg that a bracket has cut, before that, from which no arrest is possible; negative: there is none.
+ */
+static double gap_before(const trochia_track *track, int64_t i, const trochia_run *run, const trochia_bracket *b,
+                         double *over) {
+    double begin = begin_of(run, b->low);
+    int unused;
+    for (int part = 0; part < PROBED; part++) {
+        double at = begin + PLACES[part] * (b->low - begin);
+        *over = trochia_probe(track, NULL, i, run, at, &unused).margin;
+        if (*over < 0.0)
+            return at;
+    }
+    return -1.0;
+}
+
 double trochia_search(const trochia_track *track, const trochia_course *course, int64_t i, const trochia_run *run,
                       trochia_arrest *arrest, int *joins, int *barrier) {
     double low = 0.0, high = course ? run->time : first_failure(track, i, run, &low);
@@ -50,35 +112,17 @@ double trochia_search(const trochia_track *track, const trochia_course *course, 
     *barrier = 0;
     if (arrest->margin >= 0.0)
         return high;
-    *barrier = arrest->barrier;
-    int unused, stayed = 0, bends = track->stretches[i].free < INFINITY;
-    double over = arrest->margin;
-    *arrest = trochia_probe(track, course, i, run, low, &unused);
-    double under = trochia_smaller(trochia_larger(arrest->margin, 0.0), 1.0);
-    for (int k = 0; k < 80 && high - low > EXACT[bends] * run->time; k++) {
-        double time = k % 5 < 4 ? low + under * (high - low) / (under - over) : 0.5 * (low + high);
-        if (!(time > low) || !(time < high))
-            time = 0.5 * (low + high);
-        if (!(time > low) || !(time < high))
+    trochia_bracket b = {.low = low, .high = high, .joins = *joins, .barrier = arrest->barrier};
+    narrow(track, course, i, run, arrest->margin, &b);
+    for (int k = 0; k < 3 && !course && track->stretches[i].free < INFINITY && b.low > 0.0; k++) {
+        double over, at = gap_before(track, i, run, &b, &over);
+        if (at < 0.0)
             break;
-        int joining;
-        trochia_arrest found = trochia_probe(track, course, i, run, time, &joining);
-        if (found.margin >= 0.0) {
-            over *= stayed == 1 ? 0.5 : 1.0;
-            stayed = 1;
-            low = time;
-            *arrest = found;
-            under = trochia_smaller(found.margin, 1.0);
-            if (under <= NEAR[bends])
-                break;
-        } else {
-            under *= stayed == -1 ? 0.5 : 1.0;
-            stayed = -1;
-            high = time;
-            over = found.margin;
-            *joins = joining;
-            *barrier = found.barrier;
-        }
+        b = (trochia_bracket){.low = begin_of(run, at), .high = at};
+        narrow(track, course, i, run, over, &b);
     }
-    return low;
+    *arrest = b.arrest;
+    *joins = b.joins;
+    *barrier = b.barrier;
+    return b.low;
 }
