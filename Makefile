@@ -12,7 +12,7 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 CORE   := $(wildcard core/*.py core/host/*.[ch] core/shared/*.[ch])
 C_CODE := $(wildcard core/host/*.[ch] core/shared/*.[ch] firmware/*/*.[ch] tests/firmware/images/*.c)
-C_FLAGS := -std=c11 -O2 -Wall -Wextra -Wconversion -Wswitch-enum -Werror -ffp-contract=off
+C_FLAGS := -std=c11 -O2 -DTROCHIA_SCHEMA=0u -Wall -Wextra -Wconversion -Wswitch-enum -Werror -ffp-contract=off
 JOBS   ?= 2
 SOAK   ?= 1000000
 PLANS  ?= 100000

@@ -9,7 +9,6 @@ volatile uint8_t step_head, step_on;
 trochia_timeline line;
 slice_begin slices[SLICES];
 uint16_t silence_most;
-
 static uint8_t state, cause, epoch, enabled, underway, end_put;
 static uint16_t next_number;
 static uint32_t caught_at, span_duration;
@@ -327,9 +326,7 @@ static void fill(void) {
             continue;
         if (trochia_timeline_space(&line) < 20)
             return;
-        if (told == TROCHIA_NEED && !line.rest && !line.brake && !cause)
-            cause = TROCHIA_LOW;
-        if (told == TROCHIA_ENDED && !cause)
+        if (!cause && (told == TROCHIA_ENDED || !line.rest))
             cause = TROCHIA_LOW;
         trochia_timeline_end(&line);
         end_put = 1;
@@ -366,13 +363,8 @@ void motion_work(void) {
 uint16_t motion_room(void) {
     return queue_free();
 }
-
 uint8_t motion_epoch(void) {
     return epoch;
-}
-
-uint8_t motion_runs(void) {
-    return underway;
 }
 
 void motion_tell(trochia_status *told) {

@@ -41,9 +41,6 @@ void motion_greet(const trochia_hello *hello);
 uint16_t motion_room(void);
 uint8_t motion_epoch(void);
 
-/* Whether anything runs. */
-uint8_t motion_runs(void);
-
 /* All of a status but `expected`. */
 void motion_tell(trochia_status *status);
 
