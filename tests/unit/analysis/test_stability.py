@@ -7,11 +7,11 @@ import math
 import numpy as np
 import pytest
 
-from trochia.machine.motors.curves import pull_out_torque
 from trochia.analysis.stability import growth_rate, steady_angle
 from trochia.backends.stepper_twin import StepperTwin
 from trochia.errors import LimitError
 from trochia.machine.motors import HybridStepper, ShaftLoad, motor
+from trochia.machine.motors.curves import pull_out_torque
 from trochia.pulses.excitation import excitation
 
 RAMP, RUN = 0.3, 0.9

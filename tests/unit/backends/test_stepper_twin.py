@@ -7,10 +7,10 @@ import math
 import numpy as np
 import pytest
 
-from trochia.machine.motors.curves import pull_out_torque, start_stop_speed
 from trochia.backends.stepper_twin import StepperTwin
 from trochia.errors import ConfigError
 from trochia.machine.motors import HybridStepper, ShaftLoad, motor
+from trochia.machine.motors.curves import pull_out_torque, start_stop_speed
 from trochia.pulses.excitation import excitation
 
 # quick currents and next to no back-EMF: torque follows the field at once, as the textbook's pendulum

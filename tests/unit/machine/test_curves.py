@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from trochia.machine.motors.curves import corner_speed, holding_torque, pull_out_torque, start_stop_speed
 from trochia.errors import LimitError
 from trochia.machine.motors import HybridStepper, ShaftLoad, library, motor
+from trochia.machine.motors.curves import corner_speed, holding_torque, pull_out_torque, start_stop_speed
 from trochia.pulses.excitation import EXCITATIONS, microstep
 
 MOTORS = {name: row.parameters() for name, row in library().items()}
