@@ -18,11 +18,13 @@ from trochia.program import (
     End,
     Message,
     Output,
+    Probe,
     Spindle,
     SpindleLock,
     SynchronisedOutput,
     Unfinished,
     UserCode,
+    WaitInput,
 )
 
 if TYPE_CHECKING:
@@ -41,6 +43,8 @@ CANNOT: dict[type[Action], str] = {
     SpindleLock: "motion locked to the spindle",
     UserCode: "a code of the user's own (M100 to M199)",
     Unfinished: "a cycle that is not complete",
+    Probe: "a probing move",
+    WaitInput: "M66, which reads an input,",
 }
 
 

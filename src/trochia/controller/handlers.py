@@ -142,6 +142,9 @@ def answer(it: Controller, command: c.Answer, now: float) -> str:
 
 def switches(it: Controller, command: c.Switches, _now: float) -> str:
     """Set the operator's switches."""
+    if command.machine_lock:
+        raise LocalProtocolError("this controller cannot keep the axes still while a program runs yet",
+                                 hint="`trochia simulate` shows what a program does without a machine.")  # fmt: skip
     given = {name: getattr(command, name) for name in it.switches.__struct_fields__}
     it.switches = msgspec.structs.replace(it.switches, **{n: v for n, v in given.items() if v is not None})
     return "" if it.state is State.IDLE else "switches act from the next start on"

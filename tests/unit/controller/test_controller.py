@@ -329,3 +329,21 @@ def test_a_stop_before_the_first_tick_moves_nothing(bench, mill: Machine, comman
         b.ok(c.Resume())
         assert [axis.commanded for axis in b.run(until="idle").axes] == pytest.approx([0.0, 0.0, 0.0], abs=1e-9)
         assert max(position[0] for _, position, _, _ in b.trace) == pytest.approx(20.0, abs=0.01)
+
+
+@pytest.mark.parametrize("line", ["G38.2 Z-5 F100", "M66 P0 L3 Q1", "S100 M3\nG33 Z-5 K1"])
+def test_what_cannot_be_run_live_is_refused_before_anything_moves(bench, mill: Machine, line: str) -> None:
+    b = bench(mill).on()
+    text = f"G21 G90\nG0 X5\n{line}\nM2\n"
+    b.command(c.Load(name="t", text=text))
+    answer = b.command(c.Run())
+    assert not answer.ok
+    b.run(0.3)
+    assert b.status.state == "idle"
+    assert b.at("X") == 0.0
+
+
+def test_a_switch_without_effect_is_refused(bench, mill: Machine) -> None:
+    answer = bench(mill).on().command(c.Switches(machine_lock=True))
+    assert not answer.ok
+    assert "simulate" in answer.reason
