@@ -65,3 +65,16 @@ def test_the_rounding_of_a_number_beyond_all_integers():
         read("F1\nG3 X2 R[round[exp[700]]]\nM2\n")
     assert caught.value.source is not None
     assert caught.value.source.line == 2
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "G18 F1\nG0 X0 Z0\nO100 SUB\nG1 X15 Z-20\nG2 X20 Z-25 I5\nO100 ENDSUB\nG71 Q100 X2 D[7]\nM2\n",
+        "G18 F1\nG0 X0 Z0\nO100 SUB\nG1 Z0\nX2\nG2 X5 I[exp[700]]\nO100 ENDSUB\nG71 Q100 D5\nM2\n",
+    ],
+    ids=["nothing left of it", "an arc beyond all numbers"],
+)
+def test_a_profile_of_a_lathe_cycle_that_is_gone(text: str):
+    for found in problems(text):
+        assert isinstance(found, ProgramError)

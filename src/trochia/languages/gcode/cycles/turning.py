@@ -180,7 +180,15 @@ def _side(drawn: Sequence[Segment], start: Vector) -> int:
 
 
 def _path(start: Vector, contour: Sequence[Segment]) -> list[Segment]:
-    """Return the way from the start along a contour, and out to the height of the start where it ends below that."""
+    """Return the way from the start along a contour, and out to the height of the start where it ends below that.
+
+    Raises
+    ------
+    ValueError
+        Where nothing is left of the contour.
+    """
+    if not contour:
+        raise ValueError("nothing is left of the profile at that distance")
     end = contour[-1].end
     path = [Segment(start=start, end=contour[0].start), *contour]
     return [*path, Segment(start=end, end=(end[0], start[1]))] if end[1] < start[1] else path
