@@ -91,7 +91,7 @@ class Curve:
             "corner_rpm": None if corner is None else corner * RPM,
             "fastest_rpm": fastest * RPM,
             "resonance_Hz": self.resonance,
-            "start_stop_rpm": self.start_stop * RPM,
+            "start_stop_rpm": min(self.start_stop, fastest) * RPM,
             "unstable_rpm": [[low * RPM, high * RPM] for low, high in self.unstable()],
             "limits_rpm": {name: speed * RPM for name, speed in self.limits.items()},
             "curve": rows,
