@@ -114,6 +114,17 @@ class Feeder:
     def _portions(self, begin: float, end: float) -> list[Portion]:
         return [part for part in self.live.portions(begin, end) if len(part.phases)]
 
+    def soonest(self, executed: float, latency: float) -> float:
+        """Return the plan time from which an order given now can act [s]."""
+        return min(self.plan_time(executed) + latency, self.sent)
+
+    def brake(self, executed: float, latency: float) -> float:
+        """Brake along the path as soon as an order can act; return the plan time at which that begins [s]."""
+        at = self.soonest(executed, latency)
+        self.live.hold(at)
+        self.replan(at)
+        return at
+
     def replan(self, at: float) -> None:
         """Note that the plan has changed from plan time ``at`` on: what was sent beyond is to be sent anew."""
         self._stale = self._stale or self.sent > at

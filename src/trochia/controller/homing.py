@@ -97,9 +97,7 @@ class Home:
         """Brake; the search is given up."""
         self._braking = True
         if self._feeder is not None and report.caught is None:
-            at = min(self._feeder.plan_time(report.executed) + latency, self._feeder.sent)
-            self._feeder.live.hold(at)
-            self._feeder.replan(at)
+            self._feeder.brake(report.executed, latency)
 
     def finish(self, *, whole: bool) -> Orders:  # noqa: ARG002 - of the protocol
         """Watch nothing any more."""

@@ -110,10 +110,9 @@ class Job:
 
     def hold(self, report: Report, latency: float) -> None:
         """Brake along the path as soon as an order can act."""
-        at = self._soonest(report, latency)
-        self.feeder.live.hold(at)
+        at = self.feeder.brake(report.executed, latency)
         self.feeder.dark_until = np.inf
-        self._replan(at)
+        self._take_back(at)
 
     def resume(self, report: Report, *, feed: float, rapid: float) -> float:
         """Go on at these overrides, after a hold backing up to where a beam is to relight.
@@ -134,9 +133,10 @@ class Job:
 
     def override(self, report: Report, latency: float, *, feed: float, rapid: float) -> None:
         """Change the overrides as soon as an order can act."""
-        at = self._soonest(report, latency)
+        at = self.feeder.soonest(report.executed, latency)
         if self._scale(at, feed, rapid):
-            self._replan(at)
+            self.feeder.replan(at)
+            self._take_back(at)
 
     def place(self, report: Report) -> tuple[int, float]:
         """Return the line executed and how far along the program's time [s]."""
@@ -154,9 +154,6 @@ class Job:
 
     # -- inside
 
-    def _soonest(self, report: Report, latency: float) -> float:
-        return min(self.feeder.plan_time(report.executed) + latency, self.feeder.sent)
-
     def _scale(self, at: float, feed: float, rapid: float) -> bool:
         """Change the overrides from a plan time on; False where they are the same."""
         speeds = self.feeder.live.speeds
@@ -165,8 +162,8 @@ class Job:
         self.feeder.live.override(at, feed=feed, rapid=rapid)
         return True
 
-    def _replan(self, at: float) -> None:
-        self.feeder.replan(at)
+    def _take_back(self, at: float) -> None:
+        """Forget the actions and the pause that were sent for plan times from ``at`` on."""
         while self._sent and self._sent[-1][0] >= at:
             _, self._next = self._sent.pop()
         if self.waiting is not None and self._paused_at is not None and self._paused_at >= at:

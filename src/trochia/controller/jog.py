@@ -63,9 +63,7 @@ class Jog:
     def hold(self, report: Report, latency: float) -> None:
         """Brake as soon as an order can act."""
         self._braking = True
-        at = min(self.feeder.plan_time(report.executed) + latency, self.feeder.sent)
-        self.feeder.live.hold(at)
-        self.feeder.replan(at)
+        self.feeder.brake(report.executed, latency)
 
     def finish(self, *, whole: bool) -> Orders:  # noqa: ARG002 - of the protocol
         """Return nothing: a jog sets nothing."""
