@@ -14,6 +14,9 @@ from trochia.machine.codecs import Flag, Number, Quantity, Whole
 from trochia.machine.schema import Bound, Record, check_bounds, key
 
 _PERIOD = key(Quantity("time"), "of the loop; without it the machine's servo_period", Bound.POSITIVE)
+_DEAD_BAND = key(Quantity("length", motion=True), "position errors that are none", Bound.NOT_NEGATIVE)
+_LOW_PASS = key(Quantity("frequency"), "of second order, on the command", Bound.POSITIVE)
+_LIMIT = key(Quantity("voltage"), "of the command; without it the amplifier's", Bound.POSITIVE)
 _MOST_16 = (1 << 16) - 1
 
 
@@ -50,16 +53,10 @@ class CascadeLoop:
     velocity_forward: float = field(default=0.0, metadata=_forward("velocity"))
     acceleration_forward: float = field(default=0.0, metadata=_forward("acceleration"))
     friction_forward: float = field(default=0.0, metadata=_forward("dry friction"))
-    dead_band: float = field(
-        default=0.0, metadata=key(Quantity("length", motion=True), "position errors that are none", Bound.NOT_NEGATIVE)
-    )
+    dead_band: float = field(default=0.0, metadata=_DEAD_BAND)
     notch: NotchData | None = field(default=None, metadata=key(Record(NotchData), "on the command"))
-    low_pass: float | None = field(
-        default=None, metadata=key(Quantity("frequency"), "of second order, on the command", Bound.POSITIVE)
-    )
-    limit: float | None = field(
-        default=None, metadata=key(Quantity("voltage"), "of the command; without it the amplifier's", Bound.POSITIVE)
-    )
+    low_pass: float | None = field(default=None, metadata=_LOW_PASS)
+    limit: float | None = field(default=None, metadata=_LIMIT)
     period: float | None = field(default=None, metadata=_PERIOD)
 
     def __post_init__(self) -> None:
@@ -81,16 +78,10 @@ class PidLoop:
     velocity_forward: float = field(default=0.0, metadata=_forward("velocity"))
     acceleration_forward: float = field(default=0.0, metadata=_forward("acceleration"))
     friction_forward: float = field(default=0.0, metadata=_forward("dry friction"))
-    dead_band: float = field(
-        default=0.0, metadata=key(Quantity("length", motion=True), "position errors that are none", Bound.NOT_NEGATIVE)
-    )
+    dead_band: float = field(default=0.0, metadata=_DEAD_BAND)
     notch: NotchData | None = field(default=None, metadata=key(Record(NotchData), "on the command"))
-    low_pass: float | None = field(
-        default=None, metadata=key(Quantity("frequency"), "of second order, on the command", Bound.POSITIVE)
-    )
-    limit: float | None = field(
-        default=None, metadata=key(Quantity("voltage"), "of the command; without it the amplifier's", Bound.POSITIVE)
-    )
+    low_pass: float | None = field(default=None, metadata=_LOW_PASS)
+    limit: float | None = field(default=None, metadata=_LIMIT)
     period: float | None = field(default=None, metadata=_PERIOD)
 
     def __post_init__(self) -> None:
