@@ -15,8 +15,10 @@ _ROWS = 18
 _AXES = 9
 
 
-def limits_struct(matrix: NDArray[np.float64], linear: int, **rows: NDArray[np.float64]) -> Any:  # noqa: ANN401 - cffi's
-    """Return a ``trochia_limits`` without caps.
+def limits_struct(
+    matrix: NDArray[np.float64], linear: int, caps: tuple[float, ...], **rows: NDArray[np.float64]
+) -> Any:  # noqa: ANN401 - cffi's
+    """Return a ``trochia_limits``.
 
     Parameters
     ----------
@@ -24,6 +26,8 @@ def limits_struct(matrix: NDArray[np.float64], linear: int, **rows: NDArray[np.f
         Rows of limited quantities over the axes (rows, axes), the unit matrix first.
     linear
         Number of leading columns that are X, Y or Z.
+    caps
+        On the vector, for as many of velocity, acceleration and jerk as there are rows of; infinity: none.
     rows
         ``velocity``, ``acceleration`` and, where wanted, ``jerk``: the limit of each row (rows,).
 
@@ -38,10 +42,11 @@ def limits_struct(matrix: NDArray[np.float64], linear: int, **rows: NDArray[np.f
     limits = ffi.new("trochia_limits *")
     limits.axes, limits.rows, limits.linear = axes, count, linear
     limits.matrix = list(matrix.ravel()) + [0.0] * (_ROWS * _AXES - matrix.size)
-    for name, values in rows.items():
+    for (name, values), cap in zip(rows.items(), caps, strict=True):
         if values.shape != (count,) or not (values > 0).all():
             raise ValueError(f"every row needs a {name} above zero")
         setattr(limits, name, list(values) + [1.0] * (_ROWS - count))
+        setattr(limits, f"path_{name}", cap)
     return limits
 
 

@@ -55,8 +55,7 @@ class Planned:
         axes = matrix.shape[1]
         self._segments, self._pool, self._axes = segments, pool, axes
         self._rests = rising_rests(rests)
-        self._limits = limits_struct(matrix, linear, velocity=velocity, acceleration=acceleration)
-        self._limits.path_velocity, self._limits.path_acceleration = caps
+        self._limits = limits_struct(matrix, linear, caps, velocity=velocity, acceleration=acceleration)
         if segments.dtype != SEGMENT:
             raise ValueError("a path is SEGMENT rows")
         count = lib.trochia_plan_count(*self._path(), axes, len(segments))

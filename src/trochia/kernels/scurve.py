@@ -64,8 +64,7 @@ class Ramps:
         if segments.dtype != SEGMENT or not len(segments):
             raise ValueError("a path is SEGMENT rows, at least one")
         self._segments, self._pool = segments, pool
-        self._limits = limits_struct(matrix, linear, velocity=velocity, acceleration=acceleration, jerk=jerk)
-        self._limits.path_velocity, self._limits.path_acceleration, self._limits.path_jerk = caps
+        self._limits = limits_struct(matrix, linear, caps, velocity=velocity, acceleration=acceleration, jerk=jerk)
         self._plan(*rising_rests(rests))
 
     def _plan(self, where: NDArray[np.uint64], seconds: NDArray[np.float64]) -> None:

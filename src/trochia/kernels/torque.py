@@ -60,8 +60,7 @@ class Falling:
         if segments.dtype != SEGMENT or not len(segments):
             raise ValueError("a path is SEGMENT rows, at least one")
         self._segments, self._pool = segments, pool
-        self._limits = limits_struct(matrix, linear, velocity=velocity, acceleration=acceleration)
-        self._limits.path_velocity, self._limits.path_acceleration = caps
+        self._limits = limits_struct(matrix, linear, caps, velocity=velocity, acceleration=acceleration)
         self._falls = _falls(knots, len(matrix))
         where, seconds = self._rests = rising_rests(rests)
         task = self._task = ffi.new("trochia_torque_task *")
