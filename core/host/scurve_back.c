@@ -14,23 +14,15 @@ enum { FARTHEST = 64 };                   /* stretches looked back over */
 static const double BELOW = 1.0 - 1e-5;
 static const double STILL = 1e-7; /* nearer to the ceiling than this part, an even speed is kept */
 
-static trochia_track track_of(const trochia_course *course, int64_t by) {
-    return (trochia_track){course->stretches, course->count, by};
-}
-
-static trochia_arrest kick_arrest(const trochia_track *track, int64_t i, double kick, double v) {
-    return trochia_arrest_from(track, i, track->stretches[i].length, v, kick * v * v, NULL, 0, NULL);
-}
-
 /* Of a place passed at an even speed, by a lower one than planned: that of which the arrest back in time ends at v. */
 static trochia_leave slower_node(const trochia_course *course, int64_t b, double v) {
-    trochia_track back = track_of(course, -1);
+    trochia_track back = trochia_track_of(course, -1);
     const trochia_stretch *node = &course->stretches[b];
     double low = 0.0, high = node->node_v;
     trochia_arrest at = {.s = node->start};
     for (int k = 0; k < 100 && high - low > EXACT * high; k++) {
         double middle = 0.5 * (low + high);
-        trochia_arrest found = kick_arrest(&back, b - 1, node->kick_in, middle);
+        trochia_arrest found = trochia_kick_arrest(&back, b - 1, node->kick_in, middle);
         if (found.margin >= 0.0 && found.v <= v) {
             low = middle;
             at = found;
@@ -147,7 +139,7 @@ trochia_leave trochia_leave_at(const trochia_course *course, int64_t i, double v
         leave.s = -INFINITY;
         return leave;
     }
-    trochia_track back = track_of(course, -1);
+    trochia_track back = trochia_track_of(course, -1);
     int64_t k = stretch_for(stretches, death, b, v);
     double from = k + 1 == b ? stretches[b].birth_v : stretches[k + 1].peak_v, passed = 0.0;
     leave.stretch = k;
@@ -175,7 +167,7 @@ trochia_leave trochia_leave_at(const trochia_course *course, int64_t i, double v
 
 /* Where each leg's arrest would end: what joins ask for. */
 static void mark(const trochia_course *course, const trochia_stretch *stretch, const trochia_arrest *last) {
-    trochia_track back = track_of(course, -1);
+    trochia_track back = trochia_track_of(course, -1);
     trochia_leg *legs = course->legs + stretch->leg;
     if (stretch->leg + stretch->legs > course->room)
         return;
@@ -208,7 +200,7 @@ typedef struct {
 /* Through stretch m->i. */
 static void pass_stretch(trochia_course *course, int64_t b, trochia_mover *m) {
     trochia_stretch *stretches = course->stretches, *here = &stretches[m->i];
-    trochia_track back = track_of(course, -1);
+    trochia_track back = trochia_track_of(course, -1);
     trochia_run run;
     trochia_arrest arrest;
     int joins, barrier = 0;
@@ -257,7 +249,7 @@ static int turn_back(trochia_course *course, int64_t b, trochia_mover *m) {
 /* From the node at the start of stretch b back to where the ceiling is below. */
 static int64_t pass_from(trochia_course *course, int64_t b, double v, double a) {
     trochia_stretch *stretches = course->stretches;
-    trochia_track back = track_of(course, -1);
+    trochia_track back = trochia_track_of(course, -1);
     trochia_arrest birth = trochia_arrest_from(&back, b - 1, stretches[b - 1].length, v, a, NULL, 0, NULL);
     trochia_mover m = {b - 1, v, a, 0};
     int64_t ended = b;
@@ -278,22 +270,6 @@ static int64_t pass_from(trochia_course *course, int64_t b, double v, double a) 
     }
 }
 
-/* Greatest speed at which what is passed at an even one, up to the end of stretch q, joins the pass back behind it. */
-static double node_speed(const trochia_course *course, int64_t q) {
-    trochia_track ahead = track_of(course, 1);
-    const trochia_stretch *pinned = &course->stretches[q];
-    double low = 0.0, high = pinned->ceiling;
-    for (int k = 0; k < 60 && high - low > EXACT * high; k++) {
-        double v = k ? 0.5 * (low + high) : high;
-        trochia_arrest found = kick_arrest(&ahead, q + 1, pinned->kick_out, v);
-        if (found.margin >= 0.0 && trochia_leave_at(course, found.stretch, found.v).s >= found.s)
-            low = v;
-        else
-            high = v;
-    }
-    return low;
-}
-
 /* The next node before place d, where a pass back has ended; 0: the path's start. */
 static int64_t next_node(trochia_course *course, int64_t d, double *v) {
     trochia_stretch *stretches = course->stretches;
@@ -303,7 +279,7 @@ static int64_t next_node(trochia_course *course, int64_t d, double *v) {
         if (before->last)
             return j;
         if (trochia_is_pinned(before)) {
-            *v = node_speed(course, j - 1);
+            *v = trochia_node_speed(course, j - 1);
             return j - (j > 1 && trochia_pinned_end(stretches, j - 2) == j - 1 ? 2 : 1);
         }
         *v = stretches[j].ceiling;
@@ -312,63 +288,6 @@ static int64_t next_node(trochia_course *course, int64_t d, double *v) {
         before->birth = TROCHIA_NO_BIRTH;
     }
     return 0;
-}
-
-/* Greatest speed of stretch p, passed at an even one, whose kick the line beside it can take up, or half of the line
- * where there is a kick at its other end too. */
-static double kick_speed(const trochia_course *course, int64_t p, int64_t by) {
-    trochia_track track = track_of(course, by);
-    const trochia_stretch *stretches = course->stretches;
-    double kick = by > 0 ? stretches[p].kick_out : stretches[p].kick_in;
-    if (kick == 0.0)
-        return stretches[p].ceiling;
-    double other = by > 0 ? stretches[p + 2].kick_in : p > 1 ? stretches[p - 2].kick_out : 0.0;
-    double room = other > 0.0 ? 0.5 * stretches[p + by].length * SUMMED : stretches[p + by].length;
-    double low = 0.0, high = stretches[p].ceiling, from = trochia_exit(&track, p);
-    for (int k = 0; k < 60 && high - low > EXACT * high; k++) {
-        double v = k ? 0.5 * (low + high) : high;
-        trochia_arrest found = kick_arrest(&track, p + by, kick, v);
-        if (found.margin >= 0.0 && found.stretch == p + by && fabs(found.s - from) <= room)
-            low = v;
-        else
-            high = v;
-    }
-    return low;
-}
-
-/* Whether stretches p to q can be passed at one even speed: there is motion on either side, and it may change. */
-static int may_pin(const trochia_course *course, int64_t p, int64_t q) {
-    const trochia_stretch *stretches = course->stretches;
-    return p > 0 && q + 1 < course->count && !stretches[p - 1].last && !stretches[q].last &&
-           !trochia_is_pinned(&stretches[p - 1]) && !trochia_is_pinned(&stretches[q + 1]);
-}
-
-/* What cannot be passed at an even speed gets stops instead; the others get a ceiling of which their sides allow. */
-static void pin(trochia_course *course) {
-    trochia_stretch *stretches = course->stretches;
-    stretches[course->count].kick_in = stretches[course->count].kick_out = 0.0;
-    for (int64_t p = 0; p < course->count; p++) {
-        if (!trochia_is_pinned(&stretches[p]))
-            continue;
-        int64_t q = trochia_pinned_end(stretches, p);
-        int may = may_pin(course, p, q);
-        for (int64_t k = p; k <= q && !may; k++) {
-            if (stretches[k].kick_in > 0.0)
-                stretches[k - 1].last = 1;
-            if (stretches[k].kick_out > 0.0)
-                stretches[k].last = 1;
-            stretches[k].kick_in = stretches[k].kick_out = 0.0;
-        }
-        p = q;
-    }
-    for (int64_t p = 0; p < course->count; p++) {
-        if (!trochia_is_pinned(&stretches[p]))
-            continue;
-        int64_t q = trochia_pinned_end(stretches, p);
-        double least = trochia_smaller(kick_speed(course, p, -1), kick_speed(course, q, 1));
-        stretches[p].ceiling = stretches[q].ceiling = least;
-        p = q;
-    }
 }
 
 static int may_join(const trochia_course *course, int64_t d, double v) {
@@ -394,7 +313,7 @@ static void lower_before(trochia_course *course, int64_t d) {
 
 void trochia_scurve_back(trochia_course *course) {
     double v = 0.0;
-    pin(course);
+    trochia_pin(course);
     for (int64_t b = course->count; b > 0;) {
         trochia_stretch *node = &course->stretches[b];
         node->node_v = v;

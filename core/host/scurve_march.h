@@ -137,6 +137,22 @@ trochia_arrest trochia_probe(const trochia_track *track, const trochia_course *c
 double trochia_search(const trochia_track *track, const trochia_course *course, int64_t i, const trochia_run *run,
                       trochia_arrest *arrest, int *joins, int *barrier);
 
+/* The course seen in a direction. */
+static inline trochia_track trochia_track_of(const trochia_course *course, int64_t by) {
+    return (trochia_track){course->stretches, course->count, by};
+}
+
+/* From a stretch passed at an even speed v, whose kick the next one takes up. */
+static inline trochia_arrest trochia_kick_arrest(const trochia_track *track, int64_t i, double kick, double v) {
+    return trochia_arrest_from(track, i, track->stretches[i].length, v, kick * v * v, NULL, 0, NULL);
+}
+
+/* What cannot be passed at an even speed gets stops instead; the others get a ceiling of which their sides allow. */
+void trochia_pin(trochia_course *course);
+
+/* Greatest speed at which what is passed at an even one, up to the end of stretch q, joins the pass back behind it. */
+double trochia_node_speed(const trochia_course *course, int64_t q);
+
 /* The pass back over all stretches. */
 void trochia_scurve_back(trochia_course *course);
 
