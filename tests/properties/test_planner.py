@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import runpy
+from pathlib import Path
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from trochia.kernels import path as kernel
 from trochia.planner import plan
 from trochia.toolpath import build
 
-POINTS = 11
+_STATES = runpy.run_path(str(Path(__file__).parents[1] / "soak" / "phase_states.py"))
+inside, derivative, POINTS = (_STATES[name] for name in ("inside", "derivative", "POINTS"))
 MACHINES = ["mill", "capped", "belts", "rotary"]
 
 
@@ -19,21 +22,6 @@ def planned(motion, name, data):
     machine = motion.machines[name]
     program = data.draw(motion.programs(machine))
     return plan(build(program, machine), machine, program=program)
-
-
-def inside(phases):
-    """States at evenly spaced instants of every phase, ends included, by the phases' own arithmetic."""
-    states = np.repeat(phases, POINTS)
-    tau = np.tile(np.linspace(0, 1, POINTS), len(phases)) * states["duration"]
-    states["s"] += tau * (states["v"] + tau * (states["a"] / 2 + tau * states["j"] / 6))
-    states["v"] += tau * (states["a"] + tau * states["j"] / 2)
-    states["a"] += tau * states["j"]
-    return states
-
-
-def derivative(trajectory, states, order):
-    path = trajectory.path
-    return kernel.sample(path.segments, path.pool, len(path.axes), states, order)
 
 
 @pytest.mark.parametrize("name", MACHINES)

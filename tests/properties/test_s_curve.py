@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import runpy
 import subprocess
 import sys
 from pathlib import Path
@@ -12,12 +13,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from trochia.kernels import path as kernel
 from trochia.planner import plan
 from trochia.toolpath import build
 
 SOAK = Path(__file__).parents[1] / "soak"
-POINTS = 11
+_STATES = runpy.run_path(str(Path(__file__).parents[1] / "soak" / "phase_states.py"))
+inside, derivative, POINTS = (_STATES[name] for name in ("inside", "derivative", "POINTS"))
 MACHINES = ["mill", "capped", "belts", "rotary"]
 
 
@@ -33,21 +34,6 @@ def planned(motion, name, data):
     machine = machine_of(motion, name)
     program = data.draw(motion.programs(machine))
     return plan(build(program, machine, continuity=2), machine, program=program, profile="s-curve")
-
-
-def inside(phases):
-    """States at evenly spaced instants of every phase, ends included, by the phases' own arithmetic."""
-    states = np.repeat(phases, POINTS)
-    tau = np.tile(np.linspace(0, 1, POINTS), len(phases)) * states["duration"]
-    states["s"] += tau * (states["v"] + tau * (states["a"] / 2 + tau * states["j"] / 6))
-    states["v"] += tau * (states["a"] + tau * states["j"] / 2)
-    states["a"] += tau * states["j"]
-    return states
-
-
-def derivative(trajectory, states, order):
-    path = trajectory.path
-    return kernel.sample(path.segments, path.pool, len(path.axes), states, order)
 
 
 @pytest.mark.parametrize("name", MACHINES)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
+import runpy
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,7 +16,8 @@ from trochia.machine.acceleration import AccelerationCurve
 from trochia.planner import plan
 from trochia.toolpath import build
 
-POINTS = 11
+_STATES = runpy.run_path(str(Path(__file__).parents[1] / "soak" / "phase_states.py"))
+inside, POINTS = (_STATES[name] for name in ("inside", "POINTS"))
 MACHINES = ["mill", "capped", "belts", "rotary"]
 
 
@@ -32,15 +35,6 @@ def planned(motion, name, data):
     machine = dataclasses.replace(machine, axes=axes)
     program = data.draw(motion.programs(machine))
     return plan(build(program, machine), machine, program=program, profile="torque")
-
-
-def inside(phases):
-    states = np.repeat(phases, POINTS)
-    tau = np.tile(np.linspace(0, 1, POINTS), len(phases)) * states["duration"]
-    states["s"] += tau * (states["v"] + tau * (states["a"] / 2 + tau * states["j"] / 6))
-    states["v"] += tau * (states["a"] + tau * states["j"] / 2)
-    states["a"] += tau * states["j"]
-    return states
 
 
 @pytest.mark.parametrize("name", MACHINES)

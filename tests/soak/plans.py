@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Any
 
 import deviation
 import numpy as np
+from phase_states import POINTS, derivative, inside
 
-from trochia.kernels import path as kernel
 from trochia.languages import gcode
 from trochia.machine.axes import PathLimits
 from trochia.machine.kinematics import Cartesian
@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from trochia.machine.machine import Machine
     from trochia.planner import Trajectory
 
-POINTS = 11
 OVER = 1e-9
 TOLD = 1000  #: cases between two reports
 MEASURED = 50  #: one in so many has its deviation measured, which takes eight times the rest
@@ -149,16 +148,6 @@ def _splines(chance: np.random.Generator) -> Program:
     return gcode.read("\n".join([*lines, "M2", ""]))
 
 
-def inside(phases: np.ndarray) -> np.ndarray:
-    """Return states at evenly spaced instants of every phase, ends included (phases x POINTS,)."""
-    states = np.repeat(phases, POINTS)
-    tau = np.tile(np.linspace(0, 1, POINTS), len(phases)) * states["duration"]
-    states["s"] += tau * (states["v"] + tau * (states["a"] / 2 + tau * states["j"] / 6))
-    states["v"] += tau * (states["a"] + tau * states["j"] / 2)
-    states["a"] += tau * states["j"]
-    return states
-
-
 def faults(trajectory: Trajectory, worst: list[float]) -> Iterator[str]:
     """Yield what is wrong with a trajectory; raises the greatest parts of limits that are used, by derivative."""
     path, limits, linear = trajectory.path, trajectory.limits, slice(0, trajectory.limits.linear)
@@ -170,7 +159,7 @@ def faults(trajectory: Trajectory, worst: list[float]) -> Iterator[str]:
     caps = (limits.path_velocity, limits.path_acceleration, limits.path_jerk)
     orders = 4 if trajectory.profile == "s-curve" else 3
     for order, close in enumerate([1e-9, 2e-6, 1e-5, 0.0][:orders]):
-        asked = kernel.sample(path.segments, path.pool, len(path.axes), states, order)
+        asked = derivative(trajectory, states, order)
         if order:
             over = max((np.abs(asked @ limits.matrix.T) / rows[order - 1]).max(),
                        (np.linalg.norm(asked[:, linear], axis=1) / caps[order - 1]).max())  # fmt: skip

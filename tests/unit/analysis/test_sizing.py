@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import pytest
 
@@ -11,21 +12,7 @@ from trochia.errors import LimitError
 from trochia.machine.load import loads
 from trochia.machine.torque import Drive, drive
 
-STAGE = """
-format = 1
-name = "stage"
-kinematics = "cartesian"
-[axes.X]
-minimum = "-200 mm"
-maximum = "200 mm"
-velocity = "200 mm/s"
-acceleration = "2000 mm/s²"
-[joints.X]
-motor = { kind = "stepper", library = "QSH5718-55", microsteps = 16 }
-driver = { kind = "chopper", supply = "24 V", current = "2.8 A" }
-load = { mass = "2 kg", friction = "10 N" }
-transmission = { kind = "belt", pitch = "2 mm", teeth = 20 }
-"""
+STAGE = (Path(__file__).parents[2] / "golden" / "machines" / "stage.toml").read_text(encoding="utf-8")
 ARM = 0.04 / math.tau  # m a radian
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -25,21 +26,7 @@ from trochia.machine.torque import drive
 
 RPM = math.pi / 30
 SHIELD = fed(motor("SM-42BYG011-25").parameters(), HBridge(supply=12.0))
-STAGE = """
-format = 1
-name = "stage"
-kinematics = "cartesian"
-[axes.X]
-minimum = "-200 mm"
-maximum = "200 mm"
-velocity = "200 mm/s"
-acceleration = "2000 mm/s²"
-[joints.X]
-motor = { kind = "stepper", library = "QSH5718-55", microsteps = 16 }
-driver = { kind = "chopper", supply = "24 V", current = "2.8 A" }
-load = { mass = "2 kg", friction = "10 N" }
-transmission = { kind = "belt", pitch = "2 mm", teeth = 20 }
-"""
+STAGE = (Path(__file__).parents[2] / "golden" / "machines" / "stage.toml").read_text(encoding="utf-8")
 
 
 def test_whole_milliseconds_carry_the_rest():
