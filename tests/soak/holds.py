@@ -51,6 +51,7 @@ NEAR = 1e-3  #: greatest distance from the commanded path [mm]
 OVER = 1e-6  #: of a limit
 LATEST = 60.0  #: longest time a case may take [s of the machine]
 WHOLE = 20  #: one case in so many is planned to its end, and its end compared
+PHYSICS = 10  #: one case in so many has servos that are physics; the others' are ideal: what is commanded is the same
 
 
 class Ground(NamedTuple):
@@ -82,10 +83,37 @@ def cloned(live: LivePlan) -> LivePlan:
     return twin
 
 
-class Bench:
-    """A job entered in its middle."""
+class Ideal:
+    """A plant whose loads are where they are told to be, for what looks at commands only."""
 
-    def __init__(self, base: Ground, begin: float) -> None:
+    restless = False
+
+    def __init__(self, position: NDArray[np.float64]) -> None:
+        self.motor = self.load = position.copy()
+        self.lag = np.zeros(len(position))
+
+    def follow(self, commanded: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Be there."""
+        self.motor = self.load = commanded[-1].copy()
+        return commanded
+
+    def rejoin(self, commanded: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Be where it is."""
+        return commanded
+
+    def encoder(self) -> NDArray[np.float64]:
+        """Return the truth."""
+        return self.load
+
+
+class Bench:
+    """A job entered in its middle.
+
+    ``ticks`` has time, place and beam of every tick in the turn after an order and where the beam is to relight, of the
+    last tick of a turn elsewhere.
+    """
+
+    def __init__(self, base: Ground, begin: float, *, ideal: bool) -> None:
         machine = base.made.plan.machine
         self.base, self.machine = base, machine
         for _ in base.live.portions(max(begin - 1.0, 0.0), begin + 1.0):
@@ -96,6 +124,8 @@ class Bench:
         job._next = sum(action.at <= moves for action in base.made.plan.program.actions)
         at = machine.kinematics.matrix @ base.live.state(begin).position
         self.twin = LiveTwin(machine, position=at, switches=switches_of(machine))
+        if ideal:
+            self.twin.plant = Ideal(at)  # type: ignore[assignment]
         self.twin._offset = np.zeros(len(machine.joints))
         self.twin._executor.queue.rest = at.copy()
         self.twin._executor.executed = begin
@@ -108,17 +138,20 @@ class Bench:
         self.it.begin(job)
         self.job = job
         self.ticks: list[tuple[float, NDArray[np.float64], float]] = []
+        self.fine = False
         run = self.twin._run
 
-        def spy(_count: int) -> int:
-            done = run(1)
+        def spy(count: int) -> int:
+            done = run(1 if self.fine else count)
             self.ticks.append((self.twin._now, self.twin._executor.commanded, self.twin._beam))
             return done
 
         self.twin._run = spy  # type: ignore[method-assign]
 
-    def turn(self) -> None:
+    def turn(self, *, fine: bool = False) -> None:
         """Let a turn's time pass."""
+        back = self.job.feeder.plan_time(self.it.report.executed) - self.it.back
+        self.fine = fine or (self.it.state is State.RESUMING and back > -2.0 * PERIOD)
         self.now += PERIOD
         self.runtime.turn(self.now)
 
@@ -140,7 +173,7 @@ def case(seed: int, grounds: dict[tuple[str, str], Ground]) -> str:
     base = grounds[name]
     instant = draw.uniform(0.0, base.made.plan.time_s)
     begin = max(instant - LEAD, 0.0)
-    b = Bench(base, begin)
+    b = Bench(base, begin, ideal=seed % PHYSICS != 0)
     b.turn()
     while b.now < instant and b.it.state is State.RUNNING:
         b.turn()
@@ -189,7 +222,7 @@ def stop(b: Bench, command: c.AnyCommand, told: list[float]) -> tuple[float, NDA
     told.append(b.now)
     out = b.ticks[-1] if b.ticks else (b.now, b.twin._executor.commanded, b.twin._beam)
     count = len(b.ticks)
-    b.turn()
+    b.turn(fine=True)
     period = b.machine.servo_period
     late = [beam for at, _, beam in b.ticks[count:] if at > out[0] + 2.5 * period]
     assert not any(late), "the beam stays on after a stop"
