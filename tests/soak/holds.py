@@ -113,7 +113,7 @@ class Bench:
     last tick of a turn elsewhere.
     """
 
-    def __init__(self, base: Ground, begin: float, *, ideal: bool) -> None:
+    def __init__(self, base: Ground, begin: float, *, ideal: bool = False) -> None:
         machine = base.made.plan.machine
         self.base, self.machine = base, machine
         for _ in base.live.portions(max(begin - 1.0, 0.0), begin + 1.0):
