@@ -56,6 +56,18 @@ void trochia_segment_at(const trochia_segment *segment, const double *pool, uint
         arc_at(segment, c, n, s, orders, out);
 }
 
+int32_t trochia_path_check(const trochia_segment *segments, uint64_t count, uint64_t room, uint32_t n) {
+    const uint64_t sizes[3] = {2 * n, 7 + 2 * n, 4 * n}; /* of a line, an arc, a cubic */
+    for (uint64_t k = 0; k < count; k++) {
+        const trochia_segment *g = &segments[k];
+        if (g->kind > TROCHIA_CUBIC || (g->kind == TROCHIA_ARC_SEGMENT && (g->first >= n || g->second >= n)))
+            return 2;
+        if (sizes[g->kind] > room || g->data > room - sizes[g->kind])
+            return 1;
+    }
+    return 0;
+}
+
 /* Chain rule: of x(s(t)) with ds/dt = v, its derivative a, and the derivative of that j. */
 void trochia_path_sample(const trochia_segment *segments, const double *pool, uint32_t n, const trochia_phase *states,
                          uint64_t count, uint32_t order, double *out) {

@@ -51,6 +51,10 @@ void trochia_segment_at(const trochia_segment *segment, const double *pool, uint
 void trochia_path_sample(const trochia_segment *segments, const double *pool, uint32_t n, const trochia_phase *states,
                          uint64_t count, uint32_t order, double *out);
 
+/* Returns 0 where all coefficients of `count` segments in n axes lie in a pool of `room` doubles, 1 where some do not,
+ * 2 where a segment is of no kind, or an arc in a plane that is not there. */
+int32_t trochia_path_check(const trochia_segment *segments, uint64_t count, uint64_t room, uint32_t n);
+
 /* Widens least[n], greatest[n] by the segments [first, last), exactly (arcs and cubics by the roots of x'). */
 void trochia_path_extents(const trochia_segment *segments, const double *pool, uint32_t n, uint64_t first,
                           uint64_t last, double *least, double *greatest);
@@ -59,15 +63,16 @@ void trochia_path_extents(const trochia_segment *segments, const double *pool, u
 typedef struct {
     const trochia_move *moves;
     const uint8_t *rests; /* per move: 1 = motion is at rest before it */
-    const double *rpm;    /* per move: spindle speed, read for feeds per revolution only */
     uint64_t count;       /* moves */
     double start[9];      /* position before the first move */
     double tolerance;     /* of the machine, for G64 without P; blends are left out where tolerance < 0 */
     uint32_t axes;        /* columns of the path */
     uint32_t columns[9];  /* which of the nine letters each is */
-    uint32_t overlap;     /* continuity 2: corners of lines may be overlaps, at whose ends x'' jumps along x' */
-    uint32_t continuity;  /* 1: x' is continuous between stops; 2: x'' too */
-    uint32_t paced;       /* 1: the three below are given */
+    uint32_t absent_count;
+    uint32_t absent[9];  /* letters that must not move */
+    uint32_t overlap;    /* continuity 2: corners of lines may be overlaps, at whose ends x'' jumps along x' */
+    uint32_t continuity; /* 1: x' is continuous between stops; 2: x'' too */
+    uint32_t paced;      /* 1: the three below are given */
     const trochia_spline_piece *pieces; /* of the program's splines, none farther from its curve than spline_error */
     const uint64_t *first_piece;        /* per spline and once more; NULL where there are no splines */
     uint64_t spline_count;
@@ -88,7 +93,7 @@ typedef struct {
 } trochia_path_output;
 
 /* Returns 0, or 1 when a feed has no rate, 2 when a feed per revolution finds the spindle at rest, 3 when a spline is
- * not there or does not begin where the move before ended or end at its target. */
+ * not there or does not begin where the move before ended or end at its target, 4 when an absent letter moves. */
 int32_t trochia_path_build(const trochia_path_input *input, trochia_path_output *output);
 
 #endif

@@ -59,8 +59,16 @@ static inline uint64_t trochia_next_row(const trochia_reader *r, uint64_t row) {
 }
 
 /* Reads the move of a row, of a spline the next piece; length 0 where it does not move.  Returns 0, or what is wrong (1
- * no feed, 2 spindle at rest, 3 no such spline). */
+ * no feed, 2 spindle at rest, 3 no such spline, 4 an absent letter). */
 int32_t trochia_read_curve(trochia_reader *r, uint64_t row, trochia_curve *curve);
+
+/* Returns 1 where a move asks for a letter that must not move. */
+static inline int trochia_moves_absent(const trochia_path_input *in, const trochia_move *move) {
+    int moved = 0;
+    for (uint32_t k = 0; k < in->absent_count; k++)
+        moved |= move->target[in->absent[k]] != in->start[in->absent[k]];
+    return moved;
+}
 
 /* Makes the line from the reader's position to `target`; length 0 where that is no way. */
 void trochia_read_line(const trochia_reader *r, const double *target, trochia_curve *curve);

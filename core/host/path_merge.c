@@ -62,7 +62,7 @@ static uint64_t extend(trochia_reader *r, uint64_t row, double q, run *run, troc
     double end[9], taken = 0.0;
     for (; row < in->count && run->count < MOST && !in->rests[row]; row++) {
         const trochia_move *move = &in->moves[row];
-        if (!alike(&in->moves[row - 1], move))
+        if (!alike(&in->moves[row - 1], move) || trochia_moves_absent(in, move))
             break;
         int still = 1;
         for (uint32_t i = 0; i < n; i++) {

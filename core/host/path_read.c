@@ -179,8 +179,7 @@ static int32_t read_spline(trochia_reader *r, const trochia_move *move, double *
 }
 
 /* Returns 0, or what is wrong (1 no feed, 2 spindle at rest); `whole` is the length of all of the move. */
-static int32_t set_speed(const trochia_reader *r, const trochia_move *move, uint64_t row, double whole,
-                         trochia_curve *curve) {
+static int32_t set_speed(const trochia_move *move, double whole, trochia_curve *curve) {
     if (move->kind == TROCHIA_RAPID) {
         curve->speed = INFINITY;
         return 0;
@@ -191,13 +190,15 @@ static int32_t set_speed(const trochia_reader *r, const trochia_move *move, uint
     if (move->law == TROCHIA_INVERSE)
         curve->speed *= whole;
     if (move->law == TROCHIA_PER_REV)
-        curve->speed *= r->in->rpm[row] / 60.0;
+        curve->speed *= (double)move->power / 60.0; /* S of the spindle [rev/min] */
     return curve->speed > 0.0 ? 0 : 2;
 }
 
 int32_t trochia_read_curve(trochia_reader *r, uint64_t row, trochia_curve *curve) {
     const trochia_move *move = &r->in->moves[row];
     double target[9];
+    if (trochia_moves_absent(r->in, move))
+        return 4;
     for (uint32_t i = 0; i < r->frame.n; i++)
         target[i] = move->target[r->in->columns[i]];
     r->halt |= r->in->rests[row];
@@ -224,7 +225,7 @@ int32_t trochia_read_curve(trochia_reader *r, uint64_t row, trochia_curve *curve
         curve->tolerance -= r->in->spline_error;
     r->halt = 0;
     memcpy(r->position, target, sizeof target);
-    return set_speed(r, move, row, curve->kind == TROCHIA_CUBIC ? r->way : curve->length, curve);
+    return set_speed(move, curve->kind == TROCHIA_CUBIC ? r->way : curve->length, curve);
 }
 
 void trochia_start_reader(trochia_reader *r) {

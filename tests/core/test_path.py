@@ -92,9 +92,9 @@ def moves_of(*rows):
     return moves
 
 
-def built(moves, rests=None, columns=(0, 1), tolerance=0.01):
+def built(moves, rests=None, columns=(0, 1), tolerance=0.01, **more):
     still = np.zeros(len(moves), dtype=np.uint8) if rests is None else np.array(rests, dtype=np.uint8)
-    return kernel.build(moves, still, None, start=np.zeros(9), columns=columns, tolerance=tolerance)
+    return kernel.build(moves, still, start=np.zeros(9), columns=columns, tolerance=tolerance, **more)
 
 
 def reference_shares(points, tolerance):
@@ -150,6 +150,22 @@ def test_a_move_without_speed_is_reported_by_its_row():
     assert built(moves)[3] == ("feed", 1)
 
 
+@pytest.mark.parametrize("continuity", [1, 2])  # with curvature, points in line are read as one move
+def test_a_letter_that_must_not_move_is_reported_by_its_row(continuity):
+    moves = moves_of((1, 0, 1, 0.1), (2, 0, 1, 0.1), (3, 0, 1, 0.1))
+    moves["tolerance"][:, 1] = 0.1
+    assert built(moves, absent=[5], continuity=continuity)[3] is None
+    moves["target"][2, 5] = 90.0
+    assert built(moves, absent=[3, 5], continuity=continuity)[3] == ("axis", 2)
+
+
+def test_one_room_for_many_paths_gives_each_as_it_is():
+    room, first, second = kernel.Room(), moves_of((1, 0, 0, 0), (1, 2, 0, 0)), moves_of((3, 0, 0, 0))
+    for moves in (first, second, first):
+        inside, outside = built(moves, room=room), built(moves)
+        assert all((here == there).all() for here, there in zip(inside[:2], outside[:2], strict=True))
+
+
 @pytest.mark.parametrize("columns", [(), (1, 0), (0, 0), (0, 9), (-1, 0)])
 def test_columns_that_cannot_be_are_refused(columns):
     with pytest.raises(ValueError, match="columns"):
@@ -163,3 +179,8 @@ def test_a_path_that_points_outside_its_pool_is_refused():
     segments["kind"] = 7
     with pytest.raises(ValueError, match="unknown kind"):
         kernel.check(segments, np.zeros(30), 2)
+    segments["kind"], segments["second"] = 1, 2
+    with pytest.raises(ValueError, match="plane"):
+        kernel.check(segments, np.zeros(30), 2)
+    segments["second"] = 1
+    kernel.check(segments, np.zeros(11), 2)

@@ -17,16 +17,29 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-_COEFFICIENTS = {lib.TROCHIA_LINE: (0, 2), lib.TROCHIA_ARC_SEGMENT: (7, 2), lib.TROCHIA_CUBIC: (0, 4)}
 _ROOM = {1: (3, 10), 2: (6, 22)}  #: segments, and coefficients an axis, that a move may need
 _NINE = 9
-_FAULTS = {0: None, 1: "feed", 2: "spindle", 3: "spline"}
+_FAULTS = {0: None, 1: "feed", 2: "spindle", 3: "spline", 4: "axis"}
+
+
+class Room:
+    """Memory that one path after another is built in: each is gone when the next is built."""
+
+    __slots__ = ("pool", "segments")
+
+    def __init__(self) -> None:
+        self.segments: NDArray[np.void] = np.empty(0, dtype=SEGMENT)
+        self.pool: NDArray[np.float64] = np.empty(0)
+
+    def take(self, segments: int, pool: int) -> None:
+        """Have room for so many segments and coefficients."""
+        if len(self.segments) < segments or len(self.pool) < pool:
+            self.segments, self.pool = np.empty(segments, dtype=SEGMENT), np.empty(pool)
 
 
 def build(
     moves: NDArray[np.void],
     rests: NDArray[np.uint8],
-    rpm: NDArray[np.float64] | None,
     *,
     start: NDArray[np.float64],
     columns: Sequence[int],
@@ -35,6 +48,8 @@ def build(
     overlap: bool = False,
     limits: NDArray[np.float64] | None = None,
     splines: tuple[NDArray[np.void], NDArray[np.uint64], float] | None = None,
+    absent: Sequence[int] = (),
+    room: Room | None = None,
 ) -> tuple[NDArray[np.void], NDArray[np.float64], int, tuple[str, int] | None]:
     """Return the segments and coefficients of a program's moves, how many were merged, and what stopped the work.
 
@@ -44,8 +59,6 @@ def build(
         Rows of MOVE (moves,).
     rests
         1 where motion is at rest before the move (moves,).
-    rpm
-        Spindle speed at each move (moves,) [rev/min]; None where no feed is per revolution.
     start
         Position before the first move (9,).
     columns
@@ -61,12 +74,16 @@ def build(
         are then no longer than these need.
     splines
         What :func:`trochia.kernels.spline.fit` returns, and the tolerance it was given [mm].
+    absent
+        Which of the nine letters must not move.
+    room
+        Where the path is built; None: in memory of its own.
 
     Returns
     -------
     tuple
-        Segments (k,), coefficients, number of moves that others stand for, and None or ("feed" | "spindle" | "spline",
-        row of the move that has no speed or no such spline).
+        Segments (k,), coefficients, number of moves that others stand for, and None or ("feed" | "spindle" | "spline" |
+        "axis", row of the move that has no speed, no such spline, or asks for a letter that is absent).
     """
     if moves.dtype != MOVE or rests.shape != moves.shape or start.shape != (_NINE,):
         raise ValueError("a path is built from MOVE rows, as many rests, and a start of nine axes")
@@ -77,12 +94,9 @@ def build(
     ):
         raise ValueError(f"columns must be rising numbers of letters, not {columns!r}")
     axes, count = len(columns), len(moves)
-    speeds = np.zeros(count) if rpm is None else np.ascontiguousarray(rpm, dtype=np.float64)
-    if speeds.shape != moves.shape:
-        raise ValueError("one spindle speed a move")
     if continuity not in _ROOM:
         raise ValueError(f"continuity is 1 or 2, not {continuity!r}")
-    room, rows = _ROOM[continuity]
+    most, rows = _ROOM[continuity]
     given = ffi.new("trochia_path_input *")
     curves = count
     if splines is not None:
@@ -92,13 +106,11 @@ def build(
         given.spline_count, given.pieces = first.size - 1, pointer(pieces, "trochia_spline_piece *")
         given.first_piece = pointer(first, "uint64_t *")
         curves += _piece_count(moves, first)
-    segments = np.empty(room * curves, dtype=SEGMENT)
-    pool = np.empty((7 + rows * axes) * curves)
+    own = room or Room()
+    own.take(most * curves, (7 + rows * axes) * curves)
     made = ffi.new("trochia_path_output *")
     flags = np.ascontiguousarray(rests, dtype=np.uint8)
-    given.moves, given.rests, given.rpm = (
-        pointer(moves, "trochia_move *"), pointer(flags, "uint8_t *"), pointer(speeds, "double *")
-    )  # fmt: skip
+    given.moves, given.rests = pointer(moves, "trochia_move *"), pointer(flags, "uint8_t *")
     given.count, given.axes, given.tolerance, given.continuity = count, axes, tolerance, continuity
     given.overlap = overlap
     if limits is not None:
@@ -109,10 +121,13 @@ def build(
             field[0:axes] = list(row)
     given.start = list(start)
     given.columns = list(columns) + [0] * (_NINE - axes)
-    made.segments, made.pool = pointer(segments, "trochia_segment *"), pointer(pool, "double *")
+    given.absent_count, given.absent = len(absent), list(absent) + [0] * (_NINE - len(absent))
+    made.segments, made.pool = pointer(own.segments, "trochia_segment *"), pointer(own.pool, "double *")
     fault = _FAULTS[lib.trochia_path_build(given, made)]
-    segments.resize(made.segment_count, refcheck=False)
-    pool.resize(made.pool_count, refcheck=False)
+    if room is None:
+        own.segments.resize(made.segment_count, refcheck=False)
+        own.pool.resize(made.pool_count, refcheck=False)
+    segments, pool = own.segments[: made.segment_count], own.pool[: made.pool_count]
     return segments, pool, int(made.merged_count), (fault, int(made.failed_move)) if fault else None
 
 
@@ -127,14 +142,10 @@ def check(segments: NDArray[np.void], pool: NDArray[np.float64], axes: int) -> N
     """Refuse segments whose coefficients lie outside the pool or whose arc plane is no axis (ValueError)."""
     if segments.dtype != SEGMENT or pool.dtype != np.float64 or not 1 <= axes <= _NINE:
         raise ValueError("a path is SEGMENT rows and a pool of doubles in one to nine axes")
-    kinds, seen = segments["kind"], 0
-    for code, (fixed, rows) in _COEFFICIENTS.items():
-        data = segments["data"][kinds == code]
-        seen += data.size
-        if data.size and int(data.max()) + fixed + rows * axes > pool.size:
-            raise ValueError("a segment's coefficients lie outside the pool")
-    arcs = segments[kinds == lib.TROCHIA_ARC_SEGMENT]
-    if seen != segments.size or (arcs["first"] >= axes).any() or (arcs["second"] >= axes).any():
+    fault = lib.trochia_path_check(pointer(segments, "trochia_segment *"), len(segments), pool.size, axes)
+    if fault == 1:
+        raise ValueError("a segment's coefficients lie outside the pool")
+    if fault:
         raise ValueError("a segment of unknown kind, or an arc in a plane that is not there")
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from trochia.errors import LimitError, PlanningError, Source
 from trochia.kernels import path as kernel
 from trochia.kernels import spline
-from trochia.program import AXES, MoveKind, Plane, Spindle, TimeLaw
+from trochia.program import AXES, MoveKind, Plane, Spindle
 from trochia.toolpath.toolpath import Toolpath
 
 if TYPE_CHECKING:
@@ -19,12 +19,14 @@ if TYPE_CHECKING:
     from trochia.program import Program
 
 
+_CURVED = 3  #: letters that arcs and splines move: X Y Z
 SPLINE_ERROR = 1e-4  #: mm: how far a spline's cubics by length may lie from the curve
 
 
 def build(
-    program: Program, machine: Machine, *, blend: bool = True, continuity: int = 1, overlap: bool = True
-) -> Toolpath:
+    program: Program, machine: Machine, *, blend: bool = True, continuity: int = 1, overlap: bool = True,
+    room: kernel.Room | None = None,
+) -> Toolpath:  # fmt: skip
     """Return the path of a program on a machine.
 
     Parameters
@@ -41,6 +43,8 @@ def build(
     overlap
         With continuity 2: lone corners of lines are passed as overlaps of their moves, at whose ends curvature jumps,
         but along the path alone, so that acceleration need not.
+    room
+        Where the path is built, if it may be gone when the next one is built there.
 
     Raises
     ------
@@ -49,13 +53,17 @@ def build(
     LimitError
         When a feed has no speed: no F, or a feed per revolution with the spindle at rest.
     """
-    _refuse_missing_axes(program, machine)
     columns = machine.columns
+    absent = [column for column in range(len(AXES)) if column not in columns]
+    if absent and absent[0] < _CURVED:  # curves may move it, and come back
+        _refuse_absent(program, machine, absent)
     segments, pool, merged, fault = kernel.build(
-        program.moves, _rests(program, machine), _spindle_speeds(program), start=program.start, columns=columns,
+        program.moves, _rests(program, machine), start=program.start, columns=columns, absent=absent,
         tolerance=machine.path_tolerance if blend else -1.0, continuity=continuity, overlap=overlap,
-        limits=_limits(machine), splines=_splines(program),
+        limits=_limits(machine), splines=_splines(program), room=room,
     )  # fmt: skip
+    if fault and fault[0] == "axis":
+        _refuse_absent(program, machine, absent)
     if fault and fault[0] == "spline":
         raise ValueError(f"move {fault[1]} follows a spline that is not there or does not lead to its target")
     if fault:
@@ -88,34 +96,24 @@ def _rests(program: Program, machine: Machine) -> NDArray[np.uint8]:
     return rests[:-1]
 
 
-def _spindle_speeds(program: Program) -> NDArray[np.float64] | None:
-    """Return the nominal spindle speed at each move (moves,) [rev/min]; None when no feed asks for it."""
-    if not (program.moves["law"] == TimeLaw.PER_REV).any():
-        return None
-    return np.ascontiguousarray(program.moves["power"])
-
-
-def _refuse_missing_axes(program: Program, machine: Machine) -> None:
+def _refuse_absent(program: Program, machine: Machine, absent: list[int]) -> None:
     """Raise when a move needs an axis the machine lacks, naming the first such line."""
-    missing = [column for column in range(len(AXES)) if column not in machine.columns]
     moves = program.moves
-    if not len(moves) or not missing:
-        return
-    moved = moves["target"][:, missing] != program.start[missing]
+    moved = moves["target"][:, absent] != program.start[absent]
     arcs = np.flatnonzero(moves["kind"] == MoveKind.ARC)
     for plane in Plane:
-        lacking = [missing.index(column) for column in plane.axes if column in missing]
+        lacking = [absent.index(column) for column in plane.axes if column in absent]
         flat = arcs[moves["plane"][arcs] == plane]
         moved[flat[:, None], lacking] = True
     curves = np.flatnonzero(moves["kind"] == MoveKind.SPLINE)
-    for column in range(3):
-        if column in missing and curves.size:
+    for column in range(_CURVED):
+        if column in absent and curves.size:
             bent = np.ptp(program.splines[moves["turns"][curves], :, column], axis=1) > 0.0
-            moved[curves[bent], missing.index(column)] = True
+            moved[curves[bent], absent.index(column)] = True
     rows = np.flatnonzero(moved.any(axis=1))
     if rows.size:
         row = int(rows[0])
-        letter = AXES[missing[int(np.flatnonzero(moved[row])[0])]]
+        letter = AXES[absent[int(np.flatnonzero(moved[row])[0])]]
         raise PlanningError(
             f"the move needs axis {letter}, which machine {machine.name!r} does not have",
             source=Source(program.name, int(moves["line"][row])),
