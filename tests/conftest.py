@@ -39,6 +39,18 @@ def grbl_model():
     return _load("grbl_model")
 
 
+@pytest.fixture
+def talk(chip_program, board_image, request):
+    """Greets a board's image on the simulated chip."""
+
+    def begin(board):
+        talk = _load("board_talk").Talk(chip_program, board_image(f"{board}-1000000"), board)
+        request.addfinalizer(talk.line.close)
+        return talk
+
+    return begin
+
+
 _compared = Counter[str]()  # programs compared with rs274 by all processes, see oracle/conftest.py
 
 

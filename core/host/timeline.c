@@ -81,6 +81,7 @@ int64_t trochia_timeline_pulses(trochia_timeline *line, const uint8_t *spans, in
     r.backwards = line->backwards;
     for (;;) {
         uint8_t told = trochia_timeline_fill(line);
+        empty(&r);
         if (told == TROCHIA_NEED) {
             int took = take_up(&r);
             if (took < 0)
@@ -88,7 +89,6 @@ int64_t trochia_timeline_pulses(trochia_timeline *line, const uint8_t *spans, in
             if (took == 0)
                 break;
         }
-        empty(&r);
     }
     return r.made;
 }

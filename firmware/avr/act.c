@@ -67,3 +67,5 @@ ISR(PCINT0_vect) {
 }
 
 ISR(PCINT1_vect, ISR_ALIASOF(PCINT0_vect));
+
+ISR(PCINT2_vect, ISR_ALIASOF(PCINT0_vect));

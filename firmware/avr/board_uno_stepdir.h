@@ -13,6 +13,7 @@
 #define BOARD_INPUTS 6
 #define BOARD_OUTPUTS 2
 #define BOARD_QUEUE 768
+#define BOARD_STEPS PIND
 #define BOARD_FOURTH 1 /* bit of an entry */
 
 #ifndef __ASSEMBLER__
@@ -65,6 +66,10 @@ static inline void board_beam(uint8_t power) {
     } else {
         TCCR2A = 0; /* the pin is the port's again, and that is low */
     }
+}
+
+static inline uint8_t board_beam_power(void) {
+    return TCCR2A ? OCR2A : 0;
 }
 #endif
 

@@ -23,7 +23,7 @@
 #define MATCH _SFR_IO_ADDR(TIFR1), OCF1A
 
     .macro toggle
-    out _SFR_IO_ADDR(PIND), PINS
+    out _SFR_IO_ADDR(BOARD_STEPS), PINS
 #ifdef BOARD_FOURTH
     sbrc PINS, BOARD_FOURTH
     sbi _SFR_IO_ADDR(PINB), 4

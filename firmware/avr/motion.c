@@ -393,7 +393,7 @@ void motion_tell(trochia_status *told) {
     told->cause = cause;
     told->inputs = board_inputs();
     told->outputs = outputs;
-    told->beam = TCCR2A ? OCR2A : 0;
+    told->beam = board_beam_power();
     told->enabled = enabled;
     told->caught = caught;
     told->worst = 0;

@@ -9,6 +9,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include <simavr/avr_ioport.h>
 #include <simavr/avr_timer.h>
 #include <simavr/avr_uart.h>
 #include <simavr/sim_avr.h>
@@ -71,6 +72,9 @@ void serial_feed(serial *unit, const uint8_t *bytes, uint32_t count, uint64_t no
 
 /* Bytes that have not arrived yet. */
 uint32_t serial_left(const serial *unit);
+
+/* Mends how libsimavr writes to a port's pin register. */
+void ports_take(avr_t *avr, avr_ioport_t *port);
 
 /* Replaces libsimavr's model of a timer. */
 void clock_take(clock_unit *unit, avr_t *avr, avr_timer_t *timer);

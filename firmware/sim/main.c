@@ -101,6 +101,8 @@ static void take_units(void) {
             serial_take(&serial0, chip, (avr_uart_t *)io);
         if (!strcmp(io->kind, "timer") && taken < TIMERS)
             clock_take(&clocks[taken++], chip, (avr_timer_t *)io);
+        if (!strcmp(io->kind, "port"))
+            ports_take(chip, (avr_ioport_t *)io);
     }
 }
 

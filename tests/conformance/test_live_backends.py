@@ -12,6 +12,7 @@ import trochia
 from trochia.backends import LIVE_BACKENDS
 from trochia.backends.avr.live_avr import LiveAvr
 from trochia.backends.avr.transports import ChipTransport
+from trochia.backends.avr.wiring import BOARDS
 from trochia.backends.live import Orders, Watch
 from trochia.backends.segments import Segments, sampled
 from trochia.errors import LocalProtocolError
@@ -33,11 +34,12 @@ def machine() -> Machine:
     return replace(made, io=(Channel(name="touch", kind="input"), Channel(name="lamp", kind="latched")))
 
 
-@pytest.fixture(params=[*sorted(LIVE_BACKENDS), "avr"])
+@pytest.fixture(params=[*sorted(LIVE_BACKENDS), *BOARDS])
 def backend(request: pytest.FixtureRequest, machine: Machine) -> Iterator[SegmentBackend]:
-    if request.param == "avr":  # the real image, on the simulated chip
+    if request.param in BOARDS:  # the real image, on the simulated chip
         program, image = request.getfixturevalue("chip_program"), request.getfixturevalue("board_image")
-        made = LiveAvr(machine, ChipTransport(program, image("uno-stepdir-1000000")))
+        board = BOARDS[request.param]
+        made = LiveAvr(machine, ChipTransport(program, image(f"{board.name}-1000000"), mcu=board.mcu), board=board.name)
     else:
         made = LIVE_BACKENDS[request.param](machine)
     made.open(0.0)

@@ -7,7 +7,7 @@ import pytest
 
 from trochia.backends.avr.session import Greeted, Session
 from trochia.errors import LocalProtocolError, VersionMismatch
-from trochia.kernels.link import ACK, ANSWER, SCHEMA, TYPES, FrameReader, frame
+from trochia.kernels.link import ACK, ANSWER, PART, SCHEMA, SPAN, TYPES, FrameReader, frame, pulses
 
 FAULTS = 2_000
 
@@ -104,3 +104,12 @@ def test_silence_is_told():
     (lost,) = host.receive(b"", 0.6)
     assert lost.silence == pytest.approx(0.59)
     assert host.state == "lost"
+
+
+@pytest.mark.parametrize("count", [1, 2, 7, 40, 300])
+def test_every_pulse_of_a_span_is_told_also_in_its_last_slice(count: int):
+    head, part = np.zeros((), SPAN), np.zeros((), PART)
+    head["duration"], head["motors"] = 1000 * (count + 1), 1
+    part["first"], part["interval"], part["stride"], part["count"] = 256_000, 256_000, 1, count - 1
+    made = pulses(head.tobytes() + part.tobytes())
+    assert made["tick"].tolist() == [1000 * (k + 1) for k in range(count)]

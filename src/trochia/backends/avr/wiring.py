@@ -42,6 +42,10 @@ BOARDS = {
             name="uno-stepdir", mcu="atmega328p", programmer="arduino", motors=4,
             inputs=("B1", "B2", "C0", "C1", "C2", "C5"), outputs=("C3", "C4"),
         ),
+        Board(
+            name="mega-stepdir", mcu="atmega2560", programmer="wiring", motors=6,
+            inputs=("B4", "B5", "B6", "K0", "K1", "K2", "K3", "K7"), outputs=("H5", "H6", "H3", "E3"),
+        ),
     )
 }  # fmt: skip
 
