@@ -41,6 +41,7 @@ HEADERS = [
     "host/twin.h",
     "host/stepper.h",
     "host/drive.h",
+    "host/encoder.h",
     "host/servo.h",
     "shared/pid.h",
     "host/integer_pid.h",

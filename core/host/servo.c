@@ -95,7 +95,10 @@ void trochia_servo_run(const trochia_plant *plant, const trochia_loop *loop, tro
     const trochia_plant_constants k = trochia_plant_prepare(plant);
     trochia_servo_state s = *state;
     for (uint64_t i = 0; i < ticks; i++, wanted += 3, out += 7) {
-        const double measured = trochia_plant_measured(plant, &s.plant), speed = speed_of(loop, &s, measured);
+        const double measured = trochia_plant_measured(plant, &s.plant);
+        double speed = speed_of(loop, &s, measured);
+        if (plant->encoder.watched && plant->encoder.clock > 0.0)
+            speed = trochia_encoder_speed(&s.plant.encoder, plant->h) / plant->counts;
         s.command = command_of(loop, &s, wanted, measured, speed, injected != NULL ? injected[i] : 0.0);
         const double row[7] = {measured,
                                s.plant.motor,

@@ -3,6 +3,8 @@
  * Plant, in steps of h.  Angles may be ways and torques forces, as long as all agree.
  *   L di/dt = v - R i - Kb w          v: the amplifier's output (mode VOLTAGE)
  *   di/dt = (i_cmd - i) / lag         the current loop is closed inside the amplifier (mode CURRENT)
+ *   i_cmd = Kv e + Ki sum(e),  e = w_cmd - w         and the speed loop too (mode SPEED), no sum while at its limit
+ *   BRAKED: v = 0, whatever the mode: the winding is shorted.  FREE: i = 0.
  *   Jm dw/dt = Kt i - friction(w) - c           c = k dead(x - y, gap) + d (w - z) where the gap is closed
  *   Jl dz/dt = c - friction(z) - load
  *   friction(w) = (Fc + (Fs - Fc) exp(-(w / ws)^2)) tanh(w / eps) + B w + offset
@@ -15,7 +17,10 @@
 
 #include <stdint.h>
 
-enum trochia_amplifier { TROCHIA_VOLTAGE = 0, TROCHIA_CURRENT = 1 };
+#include "host/encoder.h"
+
+enum trochia_amplifier { TROCHIA_VOLTAGE = 0, TROCHIA_CURRENT = 1, TROCHIA_SPEED = 2 };
+enum trochia_power { TROCHIA_DRIVEN = 0, TROCHIA_BRAKED = 1, TROCHIA_FREE = 2 };
 enum trochia_windup {
     TROCHIA_WINDUP_NONE = 0,
     TROCHIA_WINDUP_CLAMP = 1,
@@ -31,7 +36,9 @@ typedef struct {
 
 typedef struct {
     double h;                             /* time step [s] */
-    double gain;                          /* command to volts (VOLTAGE) or to amperes (CURRENT) */
+    double gain;                          /* command to volts (VOLTAGE), amperes (CURRENT) or speed (SPEED) */
+    double offset;                        /* that it adds to its command */
+    double speed_gain, speed_integral;    /* Kv, Ki of the amplifier's own speed loop (SPEED) */
     double most_voltage;                  /* what the supply gives, after the bridge's drop */
     double drop;                          /* lost in the bridge, against the current */
     double quantum;                       /* of the voltage: PWM's resolution; 0: none */
@@ -46,6 +53,8 @@ typedef struct {
     trochia_friction motor_friction, load_friction;
     uint32_t mode;    /* enum trochia_amplifier */
     uint32_t on_load; /* 1: the encoder reads the load */
+    uint32_t power;   /* enum trochia_power */
+    trochia_encoder encoder;
 } trochia_plant;
 
 typedef struct {
@@ -53,6 +62,8 @@ typedef struct {
     double motor_speed, load_speed;
     double current;
     double motor_force, load_force; /* accelerations of the last step, for the next one's middle */
+    double sum;                     /* of the amplifier's speed loop [A] */
+    trochia_encoder_state encoder;
 } trochia_plant_state;
 
 /* u = p (b r - y) + i sum(e) + d ((c r - y) filtered) + bias, between -most and most.

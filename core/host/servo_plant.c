@@ -10,7 +10,8 @@ static double between(double x, double most) {
 
 trochia_plant_constants trochia_plant_prepare(const trochia_plant *p) {
     trochia_plant_constants k = {.half = 0.5 * p->gap, .rigid = p->stiffness == 0.0};
-    const double tau = p->mode == TROCHIA_VOLTAGE ? p->inductance / p->resistance : p->lag;
+    k.volts = p->mode == TROCHIA_VOLTAGE || p->power == TROCHIA_BRAKED;
+    const double tau = k.volts ? p->inductance / p->resistance : p->lag;
     k.keep = tau > 0.0 ? exp(-p->h / tau) : 0.0;
     k.gather = 1.0 - k.keep;
     const double both = p->motor_inertia + p->load_inertia;
@@ -43,22 +44,40 @@ static double friction(const trochia_friction *f, int dry, double per_smooth, do
     return force;
 }
 
+/* The current that an applied voltage ends in. */
+static double by_voltage(const trochia_plant *p, const trochia_plant_constants *k, double wanted, double w) {
+    double v = between(wanted, p->most_voltage);
+    if (p->quantum > 0.0)
+        v = p->quantum * floor(v / p->quantum + 0.5);
+    if (p->drop > 0.0) {
+        /* the bridge takes its drop from whatever drives the current, never more than there is */
+        const double inner = v - p->emf_constant * w;
+        v -= inner > p->drop ? p->drop : inner < -p->drop ? -p->drop : inner;
+    }
+    return (v - p->emf_constant * w) * k->conductance;
+}
+
+/* The current that the amplifier's own speed loop asks for. */
+static double by_speed(const trochia_plant *p, trochia_plant_state *s, double wanted, double w) {
+    const double e = wanted - w, current = p->speed_gain * e + s->sum;
+    if (fabs(current) <= p->most_current || e * current < 0.0)
+        s->sum += p->speed_integral * e * p->h;
+    return between(current, p->most_current);
+}
+
 /* Current after a step, and the torque it gives over it (from the mean current). */
 static double torque(const trochia_plant *p, const trochia_plant_constants *k, trochia_plant_state *s, double command,
                      double w) {
     const double before = s->current;
-    double target = p->gain * command;
-    if (p->mode == TROCHIA_VOLTAGE) {
-        double v = between(target, p->most_voltage);
-        if (p->quantum > 0.0)
-            v = p->quantum * floor(v / p->quantum + 0.5);
-        if (p->drop > 0.0) {
-            /* the bridge takes its drop from whatever drives the current, never more than there is */
-            const double inner = v - p->emf_constant * w;
-            v -= inner > p->drop ? p->drop : inner < -p->drop ? -p->drop : inner;
-        }
-        target = (v - p->emf_constant * w) * k->conductance;
+    if (p->power == TROCHIA_FREE) {
+        s->current = s->sum = 0.0;
+        return 0.0;
     }
+    double target = p->power == TROCHIA_BRAKED ? 0.0 : p->gain * (command + p->offset);
+    if (k->volts)
+        target = by_voltage(p, k, target, w);
+    else if (p->mode == TROCHIA_SPEED)
+        target = by_speed(p, s, target, w);
     s->current = between(k->keep * before + k->gather * target, p->most_current);
     return p->torque_constant * 0.5 * (k->keep > 0.0 ? before + s->current : 2.0 * s->current);
 }
@@ -71,8 +90,8 @@ static double coupling(const trochia_plant *p, const trochia_plant_constants *k,
     return k->half > 0.0 ? 0.0 : p->stiffness * twist + p->damping * slide;
 }
 
-void trochia_plant_step(const trochia_plant *p, const trochia_plant_constants *k, trochia_plant_state *s,
-                        double command, double disturbance) {
+static void advance(const trochia_plant *p, const trochia_plant_constants *k, trochia_plant_state *s, double command,
+                    double disturbance) {
     const double h = p->h, half = 0.5 * h;
     const double w = s->motor_speed + half * s->motor_force, z = s->load_speed + half * s->load_force;
     const double drive = torque(p, k, s, command, w) -
@@ -98,8 +117,19 @@ void trochia_plant_step(const trochia_plant *p, const trochia_plant_constants *k
     s->load = y + half * s->load_speed;
 }
 
+void trochia_plant_step(const trochia_plant *p, const trochia_plant_constants *k, trochia_plant_state *s,
+                        double command, double disturbance) {
+    const double from = p->on_load ? s->load : s->motor;
+    advance(p, k, s, command, disturbance);
+    if (p->encoder.watched)
+        trochia_encoder_watch(&p->encoder, &s->encoder, from * p->counts, (p->on_load ? s->load : s->motor) * p->counts,
+                              p->h, command);
+}
+
 double trochia_plant_measured(const trochia_plant *p, const trochia_plant_state *s) {
     const double x = p->on_load ? s->load : s->motor;
+    if (p->encoder.watched && s->encoder.begun)
+        return (double)s->encoder.told / p->counts;
     return p->counts > 0.0 ? floor(x * p->counts) / p->counts : x;
 }
 

@@ -12,7 +12,7 @@ typedef struct {
     double conductance;                           /* 1 / R */
     double per_smooth_motor, per_smooth_load;     /* 1 / eps */
     double per_stribeck_motor, per_stribeck_load; /* 1 / ws */
-    int rigid, dry_motor, dry_load, sticky_motor, sticky_load;
+    int volts, rigid, dry_motor, dry_load, sticky_motor, sticky_load;
 } trochia_plant_constants;
 
 trochia_plant_constants trochia_plant_prepare(const trochia_plant *plant);

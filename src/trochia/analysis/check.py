@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from trochia.analysis.counting import missed_problems
 from trochia.analysis.following import ServoUse, servo_problems, servo_use
 from trochia.analysis.habits import locked_moves, warnings
 from trochia.analysis.margins import margins
@@ -82,6 +83,7 @@ def judge(plan: Plan) -> Verdict:
         *lost_step_problems(plan, uses),
         *heat_problems(plan),
         *servo_problems(plan, servos),
+        *missed_problems(plan, servos),
         *warnings(plan.program, plan.machine),
         *_slowed(plan),
     ]

@@ -45,6 +45,8 @@ class ServoUse:
         Source lines in which more is asked than there is, in the order of time.
     square, seconds
         Integral of the square of the current over time [A²·s], and that time [s].
+    way
+        That the joint goes, to and fro [mm or degree].
     """
 
     joint: str
@@ -55,6 +57,7 @@ class ServoUse:
     square: float = 0.0
     seconds: float = 0.0
     fastest: float = 0.0
+    way: float = 0.0
     short: tuple[int, ...] = ()
 
     @property
@@ -84,6 +87,7 @@ def _take(use: ServoUse, drive: ServoDrive, row: NDArray[np.float64], block: Sam
     current = needed / drive.plant.torque_constant
     use.square += float(np.mean(current * current)) * seconds
     use.seconds += seconds
+    use.way += float(np.mean(np.abs(velocity))) * seconds
     use.fastest = max(use.fastest, float(np.abs(velocity).max(initial=0.0)))
     lines = np.unique(block.line[used > 1.0])
     use.short += tuple(int(line) for line in lines if line not in use.short)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from trochia import recorder
 from trochia.analysis.compose import report_data
+from trochia.analysis.counting import lost_problems
 from trochia.analysis.errors import contour_error, following_error, lost_steps
 from trochia.analysis.following import following_problems
 from trochia.analysis.plots import path_picture
@@ -112,7 +113,7 @@ def prove(
 
 def _seen(verdict: Verdict, plan: Plan, recording: Recording) -> Verdict:
     """Return the verdict with the problems that the run has shown, errors first."""
-    found = [*verdict.problems, *following_problems(plan, recording)]
+    found = [*verdict.problems, *following_problems(plan, recording), *lost_problems(plan, recording)]
     found.sort(key=lambda problem: problem.severity is not Severity.ERROR)
     return replace(verdict, problems=tuple(found))
 

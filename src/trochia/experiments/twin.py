@@ -46,7 +46,8 @@ class TwinAxis:
         self.enabled = False
         self._step = period / max(1, math.ceil(period / step - 1e-9))
         self._off = Loop(period=period)
-        self._kernel = ServoKernel(plant_members(plant, self._step), self._off.members(self._step), position=position)
+        self._kernel = ServoKernel(plant_members(plant, self._step), self._off.members(self._step), position=position,
+                                   seed=0 if plant.edges is None else plant.edges.seed)  # fmt: skip
         self._place, self._load, self._limit = position, position, math.inf if limit is None else limit
 
     @property

@@ -7,7 +7,7 @@ state is carried from block to block, so any cut into blocks gives the same samp
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -45,6 +45,25 @@ class ServoSamples:
                    force=force)  # fmt: skip
 
 
+class EncoderCount(NamedTuple):
+    """Where an encoder whose edges are looked at one by one is.
+
+    ``passed`` and ``told`` are edges passed and counts; ``missed`` of the edges were not counted; ``off`` is by how
+    many counts the last of ``pulses`` index pulses came elsewhere than the first.
+    """
+
+    passed: int
+    told: int
+    missed: int
+    pulses: int
+    off: int
+
+    @classmethod
+    def of(cls, state: Any) -> EncoderCount:  # noqa: ANN401 - cffi's struct
+        """Return that of a ``trochia_encoder_state``."""
+        return cls(int(state.place), int(state.told), int(state.missed), int(state.pulses), int(state.off))
+
+
 class ServoKernel:
     """One axis at rest.
 
@@ -54,20 +73,32 @@ class ServoKernel:
         Members of ``trochia_plant`` and ``trochia_loop`` by name; what is not given is 0.  Structs in them are dicts.
     position
         Where motor and load are.
+    seed
+        Of what the encoder draws.
     """
 
     def __init__(
-        self, plant: Mapping[str, Any], loop: Mapping[str, Any] | None = None, *, position: float = 0.0
+        self, plant: Mapping[str, Any], loop: Mapping[str, Any] | None = None, *, position: float = 0.0, seed: int = 0
     ) -> None:
         self._plant = ffi.new("trochia_plant *", dict(plant))
         self._loop = ffi.new("trochia_loop *", {} if loop is None else dict(loop))
         self._state = ffi.new("trochia_servo_state *")
         self._state.plant.motor = self._state.plant.load = position
+        self._state.plant.encoder.random = seed
+
+    @property
+    def encoder(self) -> EncoderCount:
+        """What its encoder has passed and counted so far; zeros where its edges are not looked at."""
+        return EncoderCount.of(self._state.plant.encoder)
 
     @property
     def ticks(self) -> int:
         """Periods run so far."""
         return int(self._state.ticks)
+
+    def set_plant(self, plant: Mapping[str, Any]) -> None:
+        """Change the plant's members from here on, as its amplifier's power; motor and load stay as they move."""
+        self._plant = ffi.new("trochia_plant *", dict(plant))
 
     def set_loop(self, loop: Mapping[str, Any]) -> None:
         """Change the loops from here on; what they remember stays."""

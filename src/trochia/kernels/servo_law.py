@@ -12,7 +12,7 @@ import numpy as np
 
 from trochia.errors import LimitError
 from trochia.kernels.layout import ffi, lib, pointer
-from trochia.kernels.servo import COLUMNS, ServoSamples
+from trochia.kernels.servo import COLUMNS, EncoderCount, ServoSamples
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -32,6 +32,8 @@ class LawKernel:
         Members of ``trochia_plant``, ``trochia_law`` and ``trochia_pid16`` by name; what is not given is 0.
     position
         Where motor and load are.
+    seed
+        Of what the encoder draws.
     """
 
     def __init__(
@@ -41,11 +43,18 @@ class LawKernel:
         *,
         pid: Mapping[str, Any] | None = None,
         position: float = 0.0,
+        seed: int = 0,
     ) -> None:
         self._plant = ffi.new("trochia_plant *", dict(plant))
         self._law = ffi.new("trochia_law *", dict(law))
         self._state = ffi.new("trochia_law_state *", {} if pid is None else {"pid": dict(pid)})
         self._state.plant.motor = self._state.plant.load = position
+        self._state.plant.encoder.random = seed
+
+    @property
+    def encoder(self) -> EncoderCount:
+        """What its encoder has passed and counted so far; zeros where its edges are not looked at."""
+        return EncoderCount.of(self._state.plant.encoder)
 
     def run(self, wanted: NDArray[np.float64], *, disturbance: NDArray[np.float64] | None = None) -> ServoSamples:
         """Go on for some ticks, following positions wanted at each (ticks,).

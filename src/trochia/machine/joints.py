@@ -9,8 +9,9 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, ClassVar
 
 from trochia.errors import ConfigError
-from trochia.machine.codecs import Flag, Quantity, Ratio, Text, Whole
+from trochia.machine.codecs import Quantity, Text, Whole
 from trochia.machine.drivers import DRIVERS, Driver, fed
+from trochia.machine.encoders import Encoder
 from trochia.machine.loads import JointLoad
 from trochia.machine.motors.catalogue import CatalogueStepper
 from trochia.machine.motors.library import motor as library_motor
@@ -87,22 +88,6 @@ class Servo:
 
 Motor = Stepper | Servo
 MOTORS: dict[str, type[Motor]] = {cls.kind: cls for cls in (Stepper, Servo)}
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Encoder:
-    """Counts a turn (after quadrature), on the motor's shaft or on the load (then counts a mm or degree)."""
-
-    counts: Fraction = field(
-        metadata=key(
-            Ratio(), "counts a turn of the shaft, all edges counted; on the load: a mm or degree", Bound.NOT_ZERO
-        )
-    )
-    on_load: bool = field(default=False, metadata=key(Flag(), "a scale on the load instead of the motor's shaft"))
-    index: bool = field(default=False, metadata=key(Flag(), "gives an index pulse once a turn"))
-
-    def __post_init__(self) -> None:
-        check_bounds(self)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -202,6 +187,10 @@ class Joint:
                                   hint='Like motor = { kind = "servo", catalogue = { kind = "dc", … } }.')  # fmt: skip
         if self.loop is not None and self.amplifier is None:
             raise ConfigError("needs the amplifier that it commands", key=f"joints.{self.name}.loop")
+        speed = self.amplifier is not None and self.amplifier.mode == "speed"
+        if speed and self.loop is not None and self.loop.kind == "cascade":
+            raise ConfigError("closes the speed, and so does the amplifier in mode speed",
+                              key=f"joints.{self.name}.loop", hint='Take kind = "pid" or "pmac".')  # fmt: skip
         if self.train.stiffness is not None and not self.load.mass > 0:
             raise ConfigError("needs a load behind it: give load.mass", key=f"joints.{self.name}.train.stiffness")
         if self.closed and self.backlash and self.train.stiffness is None and self.encoder and self.encoder.on_load:
@@ -209,6 +198,24 @@ class Joint:
                               key=f"joints.{self.name}.train.stiffness")  # fmt: skip
         if servo and self.loop is not None and self.loop.kind in ("pmac", "32nds") and self.encoder is None:
             raise ConfigError("counts, and needs an encoder", key=f"joints.{self.name}.loop")
+        self._check_edges()
+
+    def _check_edges(self) -> None:
+        """Refuse faults of an encoder that nothing reads, or that the loop cannot read."""
+        edges, loop = None if self.encoder is None else self.encoder.edges, self.loop
+        if edges is None:
+            return
+        if loop is None:
+            raise ConfigError("edges are looked at in a servo's loop, and this joint has none",
+                              key=f"joints.{self.name}.encoder", hint="Leave out channels, jitter, missed and clock, "
+                              "or give the joint a loop.")  # fmt: skip
+        if edges.clock is not None and loop.kind != "cascade":
+            raise ConfigError(f"a loop of kind {loop.kind} reads no speed; a cascade does",
+                              key=f"joints.{self.name}.encoder.clock")  # fmt: skip
+        if edges.single and not (loop.kind == "32nds" and not getattr(loop, "mended")):  # noqa: B009 - of one kind
+            raise ConfigError("one channel tells no direction: only a loop that drives one way at a time can read it",
+                              key=f"joints.{self.name}.encoder.channels",
+                              hint='That is loop.kind = "32nds" with mended = false.')  # fmt: skip
 
     @property
     def closed(self) -> bool:

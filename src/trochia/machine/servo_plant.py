@@ -19,12 +19,23 @@ from trochia.machine.friction import FRICTIONLESS, Friction
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from trochia.machine.edges import Edges
+
 
 class Mode(Enum):
     """What an amplifier makes of its command."""
 
     VOLTAGE = 0
     CURRENT = 1
+    SPEED = 2
+
+
+class Power(Enum):
+    """What an amplifier does with the winding."""
+
+    DRIVEN = 0
+    BRAKED = 1
+    FREE = 2
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,7 +45,7 @@ class Amplifier:
     Attributes
     ----------
     gain
-        Volts or amperes a unit of command.
+        Volts, amperes or speed a unit of command.
     voltage, current
         The most it gives [V, A].
     drop
@@ -43,6 +54,10 @@ class Amplifier:
         Steps of its PWM over the whole voltage (1023 of 10 bits); None: no steps.
     lag
         Time constant of the current loop inside it [s].
+    offset
+        That it adds to its command.
+    speed_gain, speed_integral
+        Of the speed loop inside one that sets the speed [A·s/rad, A/rad].
     """
 
     mode: Mode = Mode.CURRENT
@@ -52,6 +67,9 @@ class Amplifier:
     drop: float = 0.0
     levels: int | None = None
     lag: float = 0.0
+    offset: float = 0.0
+    speed_gain: float = 0.0
+    speed_integral: float = 0.0
 
 
 class Gains(NamedTuple):
@@ -81,6 +99,8 @@ class ServoPlant:
         Of the encoder, a unit of motion; None: exact.
     on_load
         Whether the encoder reads the load.
+    edges
+        Of the encoder, where they are looked at one by one.
     """
 
     amplifier: Amplifier = Amplifier()
@@ -98,6 +118,7 @@ class ServoPlant:
     load: float = 0.0
     counts: float | None = None
     on_load: bool = False
+    edges: Edges | None = None
 
     def __post_init__(self) -> None:
         for name in ("motor_inertia", "resistance", "torque_constant"):
@@ -111,6 +132,8 @@ class ServoPlant:
                               key="stiffness")  # fmt: skip
         if self.stiffness is None and self.gap > 0.0:
             raise ConfigError("a gap needs a drive train with a stiffness", key="gap")
+        if self.edges is not None and not self.counts:
+            raise ConfigError("needs counts: an exact encoder has no edges", key="edges")
 
     @property
     def rigid(self) -> bool:
@@ -120,25 +143,30 @@ class ServoPlant:
     def derivative(self, state: NDArray[np.float64], command: float, disturbance: float = 0.0) -> NDArray[np.float64]:
         """Return d/dt of (motor, load, motor speed, load speed, current) under a command, no steps and no limits.
 
-        Without inductance (or lag) the current follows at once and its entry is ignored.
+        Without inductance (or lag) the current follows at once and its entry is ignored.  An amplifier that sets the
+        speed has a sixth state: the sum of its speed loop [A].
         """
-        x, y, w, z, i = state
+        x, y, w, z, i, *sums = state
         amplifier = self.amplifier
         tau = self.inductance / self.resistance if amplifier.mode is Mode.VOLTAGE else amplifier.lag
         target = amplifier.gain * command
+        error = target - w
         if amplifier.mode is Mode.VOLTAGE:
             target = (target - self.emf_constant * w) / self.resistance
+        elif amplifier.mode is Mode.SPEED:
+            target = amplifier.speed_gain * error + sums[0]
+        more = [amplifier.speed_integral * error] * len(sums)
         current = i if tau > 0.0 else target
         drive = self.torque_constant * current - float(self.motor_friction.force(np.asarray(w)))
         against = float(self.load_friction.force(np.asarray(z))) + self.load + disturbance
         rate = (target - i) / tau if tau > 0.0 else 0.0
         if self.stiffness is None:
             a = (drive - against) / (self.motor_inertia + self.load_inertia)
-            return np.array([w, w, a, a, rate])
+            return np.array([w, w, a, a, rate, *more])
         twist, half = x - y, 0.5 * self.gap
         touching = abs(twist) > half or half == 0.0
         c = self.stiffness * (twist - math.copysign(min(abs(twist), half), twist)) + self.damping * (w - z) * touching
-        return np.array([w, z, (drive - c) / self.motor_inertia, (c - against) / self.load_inertia, rate])
+        return np.array([w, z, (drive - c) / self.motor_inertia, (c - against) / self.load_inertia, rate, *more])
 
     def linear(self, *, of_load: bool = False) -> Gains:
         """Return position by command of the linear part: no dry friction, no gap, no limits.
@@ -156,12 +184,15 @@ class ServoPlant:
             load = poly.polyadd([0.0, b2, self.load_inertia], train)
             body = poly.polysub(poly.polymul(motor, load), poly.polymul(train, train))
             over = train if of_load else load
-        amplifier = self.amplifier
+        amplifier, inner = self.amplifier, self._inner()
+        speed = self.torque_constant * poly.polymul([0.0, 1.0], inner)  # of the motor, by a unit of current
         if amplifier.mode is Mode.VOLTAGE:
             winding = np.array([self.resistance, self.inductance])
-            emf = self.torque_constant * self.emf_constant
-            back = np.array([0.0, emf]) if self.stiffness is None else emf * poly.polymul([0.0, 1.0], self._inner())
-            whole = poly.polyadd(poly.polymul(winding, body), back)
+            whole = poly.polyadd(poly.polymul(winding, body), self.emf_constant * speed)
+        elif amplifier.mode is Mode.SPEED:
+            own = np.array([amplifier.speed_integral, amplifier.speed_gain])
+            whole = poly.polyadd(poly.polymul([0.0, 1.0, amplifier.lag], body), poly.polymul(own, speed))
+            over = poly.polymul(own, over)
         else:
             whole = poly.polymul([1.0, amplifier.lag], body)
         gain = amplifier.gain * self.torque_constant
@@ -170,5 +201,6 @@ class ServoPlant:
 
     def _inner(self) -> NDArray[np.float64]:
         """Return the motor's share of the body: position of the motor by torque is this over the body."""
-        assert self.stiffness is not None, "a rigid train has one body"
+        if self.stiffness is None:
+            return np.ones(1)
         return np.array([self.stiffness, self.damping + self.load_friction.viscous, self.load_inertia])

@@ -13,13 +13,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from trochia.errors import ConfigError
-from trochia.kernels.servo import ServoKernel, ServoSamples
-from trochia.machine.servo_plant import Mode
+from trochia.kernels.servo import EncoderCount, ServoKernel, ServoSamples
+from trochia.machine.servo_plant import Power
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from trochia.machine.edges import Edges
     from trochia.machine.friction import Friction
     from trochia.machine.servo_plant import ServoPlant
     from trochia.servo.filters import Biquad
@@ -106,7 +107,8 @@ class ServoAxis:
     def __init__(self, plant: ServoPlant, loop: Loop, *, position: float = 0.0, step: float = STEP) -> None:
         self.plant, self.loop = plant, loop
         self.step = loop.period / max(1, math.ceil(loop.period / step - 1e-9))
-        self._kernel = ServoKernel(plant_members(plant, self.step), loop.members(self.step), position=position)
+        self._kernel = ServoKernel(plant_members(plant, self.step), loop.members(self.step), position=position,
+                                   seed=0 if plant.edges is None else plant.edges.seed)  # fmt: skip
 
     def run(
         self,
@@ -124,6 +126,11 @@ class ServoAxis:
         """
         return self._kernel.run(wanted, disturbance=disturbance, injected=injected)
 
+    @property
+    def encoder(self) -> EncoderCount:
+        """What its encoder has passed and counted so far, where its edges are looked at one by one."""
+        return self._kernel.encoder
+
     def retune(self, loop: Loop) -> None:
         """Go on with other gains at the same period; what the controllers remember stays."""
         if loop.period != self.loop.period:
@@ -132,20 +139,27 @@ class ServoAxis:
         self._kernel.set_loop(loop.members(self.step))
 
 
-def plant_members(plant: ServoPlant, step: float) -> dict[str, Any]:
+def plant_members(plant: ServoPlant, step: float, power: Power = Power.DRIVEN) -> dict[str, Any]:
     """Return the members of ``trochia_plant`` for a time step [s]."""
     amplifier = plant.amplifier
     return {
-        "h": step, "gain": amplifier.gain, "most_voltage": amplifier.voltage,
+        "h": step, "gain": amplifier.gain, "offset": amplifier.offset, "most_voltage": amplifier.voltage,
+        "speed_gain": amplifier.speed_gain, "speed_integral": amplifier.speed_integral,
         "drop": amplifier.drop, "quantum": 0.0 if amplifier.levels is None else amplifier.voltage / amplifier.levels,
         "most_current": amplifier.current, "lag": amplifier.lag,
         "resistance": plant.resistance, "inductance": plant.inductance, "torque_constant": plant.torque_constant,
-        "emf_constant": plant.emf_constant if amplifier.mode is Mode.VOLTAGE else 0.0,
+        "emf_constant": plant.emf_constant,
         "motor_inertia": plant.motor_inertia, "load_inertia": plant.load_inertia,
         "stiffness": plant.stiffness or 0.0, "damping": plant.damping, "gap": plant.gap, "load": plant.load,
         "counts": plant.counts or 0.0, "on_load": int(plant.on_load), "mode": amplifier.mode.value,
         "motor_friction": _friction(plant.motor_friction), "load_friction": _friction(plant.load_friction),
+        "power": power.value, "encoder": {} if plant.edges is None else _encoder(plant.edges),
     }  # fmt: skip
+
+
+def _encoder(edges: Edges) -> dict[str, float]:
+    return {"jitter": edges.jitter, "missed": edges.missed, "clock": edges.clock or 0.0, "turn": edges.turn or 0,
+            "single": int(edges.single), "watched": 1}  # fmt: skip
 
 
 def _friction(friction: Friction) -> dict[str, float]:

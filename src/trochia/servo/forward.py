@@ -6,6 +6,7 @@ In: a plant and a loop.  Out: the loop with its feed-forward set, so that on the
     torque  = J a + B v + Fc sign v + load
     command = torque / (Kt gain)                     of an amplifier that sets the current
             = (R torque / Kt + Kb v + drop) / gain   of one that sets the voltage
+            = v / gain                               of one that sets the speed: its own loop finds the torque
 
 What a controller does with the speed *measured* it would do against the motion; that is given to it on top.  A speed
 from the last n periods is n T/2 late, so it falls short by a n T/2: that is given too.
@@ -35,6 +36,9 @@ def feed_forward(
         of the speed wanted that a speed controller is told.
     """
     amplifier, motor, load = plant.amplifier, plant.motor_friction, plant.load_friction
+    if amplifier.mode is Mode.SPEED:
+        damping = 0.0 if loop.position is None else loop.position.kd * (1.0 - loop.position.c)
+        return replace(loop, viscous_forward=velocity * (1.0 / amplifier.gain + damping))
     late = 0.5 * loop.period * loop.averaged
     volts = amplifier.mode is Mode.VOLTAGE
     a_newton = (plant.resistance if volts else 1.0) / (plant.torque_constant * amplifier.gain)

@@ -118,7 +118,9 @@ def _law(drive: ServoDrive, data: PmacLoop | ThirtySecondsLoop, at: float) -> La
     else:
         law |= {"kind": THIRTY_SECONDS, "volts": drive.amplifier.command / data.most}
         pid = {"p": data.p, "i": data.i, "d": data.d, "most": data.most, "mended": int(data.mended)}
-    return LawKernel(plant_members(drive.plant, drive.period / steps), law, pid=pid, position=at)
+    edges = drive.plant.edges
+    return LawKernel(plant_members(drive.plant, drive.period / steps), law, pid=pid, position=at,
+                     seed=0 if edges is None else edges.seed)  # fmt: skip
 
 
 def at_rest(position: float, ticks: int) -> NDArray[np.float64]:

@@ -32,8 +32,11 @@ class StateSpace(NamedTuple):
 
 
 def state_space(plant: ServoPlant) -> StateSpace:
-    """Return position (of what the encoder reads) by command; states motor, load, their speeds, current."""
-    a, b = np.zeros((5, 5)), np.zeros((5, 1))
+    """Return position (of what the encoder reads) by command.
+
+    States are motor, load, their speeds, current, and the sum of an amplifier's own speed loop.
+    """
+    a, b = np.zeros((6, 6)), np.zeros((6, 1))
     a[0, 2] = a[1, 3] = 1.0
     b1, b2 = plant.motor_friction.viscous, plant.load_friction.viscous
     if plant.stiffness is None:
@@ -42,27 +45,40 @@ def state_space(plant: ServoPlant) -> StateSpace:
         a[2, 4] = a[3, 4] = plant.torque_constant / inertia
     else:
         k, d, j1, j2 = plant.stiffness, plant.damping, plant.motor_inertia, plant.load_inertia
-        a[2] = np.array([-k, k, -d - b1, d, plant.torque_constant]) / j1
-        a[3] = np.array([k, -k, d, -d - b2, 0.0]) / j2
-    amplifier = plant.amplifier
-    voltage = amplifier.mode is Mode.VOLTAGE
-    tau = plant.inductance / plant.resistance if voltage else amplifier.lag
-    over = 1.0 / plant.resistance if voltage else 1.0  # current by volts, or by amperes
-    back = plant.emf_constant * over if voltage else 0.0
+        a[2] = np.array([-k, k, -d - b1, d, plant.torque_constant, 0.0]) / j1
+        a[3] = np.array([k, -k, d, -d - b2, 0.0, 0.0]) / j2
+    amplifier, mode = plant.amplifier, plant.amplifier.mode
+    tau = plant.inductance / plant.resistance if mode is Mode.VOLTAGE else amplifier.lag
+    over, back = _of_current(plant)
+    if mode is Mode.SPEED:
+        a[5, 2], b[5] = -amplifier.speed_integral, amplifier.speed_integral * amplifier.gain
+    summed = float(mode is Mode.SPEED)
     if tau > 0.0:
-        a[4, 2], a[4, 4], b[4] = -back / tau, -1.0 / tau, amplifier.gain * over / tau
+        a[4, 2], a[4, 4], a[4, 5], b[4] = -back / tau, -1.0 / tau, summed / tau, amplifier.gain * over / tau
     else:  # the current follows at once
         per = a[:, 4].copy()
         a[:, 2] -= per * back
+        a[:, 5] += per * summed
         b[:, 0] += per * amplifier.gain * over
-        a[:, 4] = 0.0
-        a, b = a[:4, :4], b[:4]
     c = np.zeros((1, len(a)))
     c[0, int(plant.on_load)] = 1.0
-    if plant.stiffness is None:  # one body: the load's states repeat the motor's
-        keep = [0, 2, *range(4, len(a))]
-        a, b, c = a[np.ix_(keep, keep)], b[keep], np.eye(1, len(keep))
-    return StateSpace(a, b, c)
+    # of one body the load's states repeat the motor's; without lag or sum theirs are none
+    bodies = [0, 2] if plant.stiffness is None else [0, 1, 2, 3]
+    keep = [*bodies, *([4] if tau > 0.0 else []), *([5] if summed else [])]
+    if plant.stiffness is None:
+        c[0, 0], c[0, 1] = 1.0, 0.0
+    return StateSpace(a[np.ix_(keep, keep)], b[keep], c[:, keep])
+
+
+def _of_current(plant: ServoPlant) -> tuple[float, float]:
+    """Return the current by a unit of what the amplifier is told, and by a unit of speed against it."""
+    match plant.amplifier.mode:
+        case Mode.VOLTAGE:
+            return 1.0 / plant.resistance, plant.emf_constant / plant.resistance
+        case Mode.SPEED:
+            return plant.amplifier.speed_gain, plant.amplifier.speed_gain
+        case Mode.CURRENT:
+            return 1.0, 0.0
 
 
 def held(system: StateSpace, period: float) -> StateSpace:

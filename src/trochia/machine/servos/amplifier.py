@@ -13,7 +13,8 @@ from trochia.machine.codecs import Quantity, Text, Whole
 from trochia.machine.schema import Bound, check_bounds, key
 from trochia.machine.servo_plant import Amplifier, Mode
 
-MODES = ("voltage", "current")
+MODES = ("voltage", "current", "speed")
+_CORNER = 4.0  # of the speed loop's integral, below its bandwidth: two equal poles at half of it
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,6 +40,12 @@ class ServoAmplifier:
         default=None, metadata=key(Quantity("voltage"), "its supply; in mode voltage that of the greatest command",
                                    Bound.POSITIVE)
     )  # fmt: skip
+    speed: float | None = field(
+        default=None, metadata=key(Quantity("rotation speed"), "of its greatest command (mode speed)", Bound.POSITIVE)
+    )
+    bandwidth: float = field(
+        default=100.0, metadata=key(Quantity("frequency"), "of its own speed loop (mode speed)", Bound.POSITIVE)
+    )
     drop: float = field(default=0.0, metadata=key(Quantity("voltage"), "lost in the bridge", Bound.NOT_NEGATIVE))
     levels: int | None = field(
         default=None, metadata=key(Whole(), "steps of its PWM over the voltage (10 bits: 1023)", Bound.POSITIVE)
@@ -48,7 +55,7 @@ class ServoAmplifier:
         default=0.0, metadata=key(Quantity("time"), "in which neither switch of a leg is on", Bound.NOT_NEGATIVE)
     )
     lag: float = field(
-        default=0.0, metadata=key(Quantity("time"), "of its current loop (mode current)", Bound.NOT_NEGATIVE)
+        default=0.0, metadata=key(Quantity("time"), "of its current loop (modes current and speed)", Bound.NOT_NEGATIVE)
     )
     offset: float = field(default=0.0, metadata=key(Quantity("voltage"), "that it adds to its command"))
 
@@ -70,21 +77,32 @@ class ServoAmplifier:
 
     @property
     def gain(self) -> float:
-        """Volts or amperes a volt of command."""
-        full = self.current if self.mode == "current" else self.voltage
+        """Volts, amperes or rad/s a volt of command."""
+        full = {"current": self.current, "voltage": self.voltage,
+                "speed": None if self.speed is None else self.speed * math.tau / 60.0}[self.mode]  # fmt: skip
         assert full is not None, "held to at construction"
         return full / self.command
 
-    def physical(self, most_current: float) -> Amplifier:
-        """Return what the equations need, for a motor that may carry a current [A]."""
+    def physical(self, most_current: float, *, inertia: float, torque_constant: float) -> Amplifier:
+        """Return what the equations need, for a motor that may carry a current [A].
+
+        Parameters
+        ----------
+        inertia, torque_constant
+            Of all that its own speed loop moves [kg·m²], and of the motor [N·m/A].
+        """
+        own = math.tau * self.bandwidth * inertia / torque_constant if self.mode == "speed" else 0.0
         return Amplifier(
-            mode=Mode.CURRENT if self.mode == "current" else Mode.VOLTAGE,
+            mode=Mode[self.mode.upper()],
             gain=self.gain,
             voltage=self.voltage if self.voltage is not None else math.inf,
             current=min(self.current or math.inf, most_current),
             drop=self.whole_drop if self.mode == "voltage" else 0.0,
             levels=self.levels,
             lag=self.lag,
+            offset=self.offset if self.mode == "speed" else 0.0,
+            speed_gain=own,
+            speed_integral=own * math.tau * self.bandwidth / _CORNER,
         )
 
 

@@ -149,12 +149,14 @@ def _plant(
     joint: Joint, catalogue: CatalogueDc | CataloguePmsm, amplifier: ServoAmplifier, load: ShaftLoad, per_radian: float
 ) -> ServoPlant:
     """Return motor, train and load in SI units of the shaft."""
-    train, motor, gives = joint.train, catalogue.parameters(), amplifier.physical(catalogue.peak_current or math.inf)
+    train, motor = joint.train, catalogue.parameters()
     behind = load.inertia - joint.load.inertia  # what does not turn with the shaft itself
     split = train.stiffness is not None
     inertia = motor.inertia + joint.load.inertia + (0.0 if split else behind)
+    gives = amplifier.physical(catalogue.peak_current or math.inf, inertia=inertia + (behind if split else 0.0),
+                               torque_constant=motor.torque_constant)  # fmt: skip
     dry = catalogue.friction + (0.0 if split else load.friction)
-    push = amplifier.offset * amplifier.gain * motor.torque_constant
+    push = 0.0 if gives.mode is Mode.SPEED else amplifier.offset * amplifier.gain * motor.torque_constant
     push /= motor.resistance if gives.mode is Mode.VOLTAGE else 1.0
     own = _friction(train, dry, motor.viscous + (0.0 if split else train.viscous), inertia, loaded=not split)
     far = _friction(train, load.friction, train.viscous, behind, loaded=True) if split else Friction(smooth=SMOOTH)
@@ -166,7 +168,7 @@ def _plant(
         stiffness=train.stiffness, damping=train.damping, gap=joint.backlash / per_radian if split else 0.0,
         motor_friction=own, load_friction=far, load=load.constant - push,
         counts=None if encoder is None else abs(float(joint.counts_per_unit or 0)) * per_radian,
-        on_load=encoder is not None and encoder.on_load,
+        on_load=encoder is not None and encoder.on_load, edges=None if encoder is None else encoder.edges,
     )  # fmt: skip
 
 
