@@ -22,7 +22,8 @@ class Told(NamedTuple):
     """What happened over some ticks.
 
     ``commanded`` are joint positions after each tick (ticks, joints); ``velocity`` (joints,), ``line`` and ``power``
-    are those of the last.
+    are those of the last.  ``executed`` is stream time (ticks,), ``speeds`` are velocities (ticks, joints), ``lines``
+    and ``powers`` those of each tick (ticks,).
     """
 
     ticks: int
@@ -30,6 +31,10 @@ class Told(NamedTuple):
     velocity: NDArray[np.float64]
     line: int
     power: float
+    executed: NDArray[np.float64]
+    speeds: NDArray[np.float64]
+    lines: NDArray[np.uint32]
+    powers: NDArray[np.float32]
 
 
 class Executor:
@@ -88,8 +93,8 @@ class Executor:
         u = np.minimum(self.executed + self.rate * self.period * np.arange(1, count + 1), self.queue.end)
         row, position, velocity = self.queue.at(u)
         self.executed = float(u[-1])
-        held, last = self.queue.held, int(row[-1])
-        told = Told(count, position, velocity[-1] * self.rate, int(held.line[last]), float(held.power[last]))
+        lines, powers, speeds = self.queue.held.line[row], self.queue.held.power[row], velocity * self.rate
+        told = Told(count, position, speeds[-1], int(lines[-1]), float(powers[-1]), u, speeds, lines, powers)
         if self.rate == 0.0:
             self.halt()  # what is queued is the controller's to plan anew
         return told

@@ -8,10 +8,10 @@ without ending at rest slows the rate to 0 by itself, as does a lost host; whate
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, ClassVar, Protocol
+from typing import TYPE_CHECKING, ClassVar, Protocol, runtime_checkable
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     import numpy as np
     from numpy.typing import NDArray
@@ -128,6 +128,48 @@ class SegmentBackend(Protocol):
     Attributes
     ----------
     latency
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ticks:
+    """What happened at servo ticks that follow each other, none left out; a backend's report with time in it.
+
+    Attributes
+    ----------
+    period
+        From tick to tick [s].
+    executed
+        Stream time (ticks,) [s].
+    commanded, velocity, encoder, actual
+        Of the joints (ticks, joints), as in :class:`Report`; NaN where there is none.
+    beam, line
+        At each tick (ticks,).
+    """
+
+    period: float
+    executed: NDArray[np.float64]
+    commanded: NDArray[np.float64]
+    velocity: NDArray[np.float64]
+    encoder: NDArray[np.float64]
+    actual: NDArray[np.float64]
+    beam: NDArray[np.float32]
+    line: NDArray[np.uint32]
+
+    def __len__(self) -> int:
+        return len(self.executed)
+
+
+@runtime_checkable
+class Tapped(Protocol):
+    """A backend that can tell of every servo tick.
+
+    Attributes
+    ----------
+    tap
+        Called inside ``poll``, with ticks as they are run through; None: nobody listens.
+    """
+
+    tap: Callable[[Ticks], None] | None
+
+
         How long an order takes to act, at most [s]: what lies nearer than that in stream time cannot be replaced.
     ahead
         How much motion it wants to hold [s].

@@ -32,6 +32,8 @@ class LiveServo:
     ----------
     measured
         What its encoder says.
+    readings
+        What it said at each command of the last call (ticks,).
     lag
         Greatest error over the last call.
     """
@@ -50,6 +52,7 @@ class LiveServo:
         self._done = 1  # ticks of the loop since: the one at 0 stands for the past
         self._last = np.array([[0.0], [position]])  # time, and where the motor was at the last tick
         self.measured, self.lag, self._rest = position, 0.0, math.inf
+        self.readings = np.full(1, position)
 
     @property
     def restless(self) -> bool:
@@ -66,10 +69,13 @@ class LiveServo:
         at = tick * np.arange(self._now, self._now + len(commanded) + 1, dtype=np.float64)
         loop = period * np.arange(self._done, math.floor(at[-1] / period + 1e-6) + 1, dtype=np.float64)
         self.lag = 0.0
+        self.readings = np.full(len(commanded), self.measured)
         if loop.size:
             sets[1:, 0] = sets[1:, 1]  # within the first period, as at its end
             wanted = np.stack([np.interp(loop, at, row) for row in sets], axis=1)
             rows = self._servo.run(wanted)
+            latest = loop.searchsorted(at[1:] * (1.0 + 1e-9), side="right") - 1
+            self.readings = np.where(latest >= 0, rows.measured[np.maximum(latest, 0)], self.measured)
             self.measured = float(rows.measured[-1])
             self.lag = float(np.abs(wanted[:, 0] - rows.measured).max())
             self._last = np.concatenate([self._last, np.stack([loop, rows.load])], axis=1)

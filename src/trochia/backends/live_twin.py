@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from trochia.backends.executor import Executor
-from trochia.backends.live import BUILT_IN, Orders, Report, Trouble
+from trochia.backends.live import BUILT_IN, Orders, Report, Ticks, Trouble
 from trochia.backends.plant import Plant
 from trochia.errors import LocalProtocolError
 from trochia.messages import Cause
@@ -50,6 +50,8 @@ class LiveTwin:
     faulty
         Joints whose drive reports a fault.
     """
+    tap
+        Is told of every servo tick.
 
     kind: ClassVar[str] = "twin"
 
@@ -73,6 +75,7 @@ class LiveTwin:
         self.faulty: set[str] = set()
         self._switches = dict(switches or {})
         self._names = [joint.name for joint in machine.joints]
+        self.tap: Callable[[Ticks], None] | None = None
         self._offset = -real  # what the controller calls a position, less where it really is
         self._executor = Executor(np.zeros(joints), machine.servo_period)
         self._now = 0.0
@@ -175,7 +178,8 @@ class LiveTwin:
     def _run(self, ticks: int) -> int:
         """Run through up to so many servo ticks, and return how many."""
         if not self._executor.moving:
-            if self._enabled and self.plant.restless:
+            settling = self._enabled and self.plant.restless
+            if settling:
                 ticks = min(ticks, AT_REST)
                 self.plant.follow(np.tile(self._executor.commanded - self._offset, (ticks, 1)))
                 self._look_at_joints()
@@ -191,6 +195,7 @@ class LiveTwin:
         self._now += told.ticks * self.machine.servo_period
         self._velocity, self._line = told.velocity, told.line
         self._light(told)
+            self._tell_rest(ticks, settling=settling)
         self._outputs_due()
         self._look_at_inputs()
         self._look_at_joints()
@@ -201,6 +206,7 @@ class LiveTwin:
         lit = self._lit and not self._executor.braking and self._executor.rate >= 1.0
         self._beam = told.power if lit and bool(told.velocity.any()) else 0.0
 
+        self._tell(told)
     def _outputs_due(self) -> None:
         while self._timed and self._timed[0][0] <= self._executor.executed + 1e-9:
             _, name, value = self._timed.pop(0)
@@ -212,6 +218,31 @@ class LiveTwin:
         for watch in self._watch:
             if levels.get(watch.name) == watch.level:
                 self._caught = (watch.name, self._executor.commanded)
+    def _tell(self, told: Told) -> None:
+        """Tell who listens of ticks in motion."""
+        if self.tap is None:
+            return
+        lit = self._lit and not self._executor.braking and self._executor.rate >= 1.0
+        beam = np.where(told.speeds.any(axis=1), told.powers, 0.0) if lit else np.zeros(told.ticks)
+        self.tap(Ticks(
+            period=self.machine.servo_period, executed=told.executed, commanded=told.commanded, velocity=told.speeds,
+            encoder=self.plant.measured + self._offset, actual=self.plant.loads + self._offset,
+            beam=beam.astype(np.float32), line=told.lines,
+        ))  # fmt: skip
+
+    def _tell_rest(self, ticks: int, *, settling: bool) -> None:
+        """Tell who listens of ticks at rest, of the command or of all."""
+        if self.tap is None:
+            return
+        joints = len(self._names)
+        self.tap(Ticks(
+            period=self.machine.servo_period, executed=np.full(ticks, self._executor.executed),
+            commanded=np.tile(self._executor.commanded, (ticks, 1)), velocity=np.zeros((ticks, joints)),
+            encoder=(self.plant.measured if settling else np.tile(self.plant.encoder(), (ticks, 1))) + self._offset,
+            actual=(self.plant.loads if settling else np.tile(self.plant.load, (ticks, 1))) + self._offset,
+            beam=np.zeros(ticks, np.float32), line=np.full(ticks, self._line, np.uint32),
+        ))  # fmt: skip
+
                 self._watch, self._executor.braking, self._beam = (), True, 0.0
                 return
 

@@ -37,6 +37,8 @@ class Plant:
     lag
         Greatest distance of what tells the position from the command over the last block (joints,): of a servo that is
         physics its encoder, else the load.
+    loads, measured
+        Where loads were and what encoders said at each tick of the last block (ticks, joints); NaN without encoder.
     jammed
         Names of joints whose load and motor stay where they are, whatever is commanded.
     """
@@ -58,11 +60,13 @@ class Plant:
         }
         self.motor, self.load = position.copy(), position.copy()
         self.lag = np.zeros(len(position))
+        self.loads, self.measured = self.load[None, :], self.encoder()[None, :]
         self.jammed: set[str] = set()
 
     def follow(self, commanded: NDArray[np.float64]) -> NDArray[np.float64]:
         """Follow a block of commands (ticks, joints); return where the loads were (ticks, joints)."""
         loads = np.tile(self.load, (len(commanded), 1))
+        self.measured = np.tile(self.encoder(), (len(commanded), 1))
         for i, joint in enumerate(self._joints):
             servo = self._servos.get(i)
             if self._machine.joints[i].name in self.jammed:
@@ -70,11 +74,17 @@ class Plant:
             elif servo is not None:
                 motor, loads[:, i] = servo.follow(commanded[:, i])
                 self.motor[i], self.load[i], self.lag[i] = motor[-1], loads[-1, i], servo.lag
+                if self._machine.joints[i].encoder is not None:
+                    self.measured[:, i] = servo.readings
             else:
                 block = joint.run(commanded[:, i])
                 loads[:, i] = block.load
                 self.motor[i], self.load[i] = block.motor[-1], block.load[-1]
+                encoder = self._machine.joints[i].encoder
+                if encoder is not None:
+                    self.measured[:, i] = block.load if encoder.on_load else block.motor
                 self.lag[i] = abs(commanded[-1, i] - self.load[i])
+        self.loads = loads
         return loads
 
     @property

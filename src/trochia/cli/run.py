@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING
 import click
 
 from trochia.cli import options
+from trochia.cli.record_options import recording_options, tell_recorded
 
 if TYPE_CHECKING:
+    from trochia.controller.recording import Take
     from trochia.controller.runtime import Runtime
     from trochia.languages.gcode import Reading
     from trochia.messages import AnyCommand, Status
@@ -27,11 +29,12 @@ LOOK = 0.1  #: between looks at the status [s]
 @click.option("--baud", type=click.IntRange(min=1200), default=115200, show_default=True, help="Its baud rate.")
 @click.option("--virtual", is_flag=True, help="Run by a virtual clock, as fast as the computer can.")
 @click.option("-y", "--yes", is_flag=True, help="Home, start and go on at stops without asking.")
+@recording_options
 @click.option("--journal", type=click.Path(file_okay=False, path_type=Path), metavar="DIR",
               help="Folder of the machine's journal; without it nothing is kept.")  # fmt: skip
 def command(
     *, program: str, machine_name: str, place: dict[str, float], profile: str | None, as_json: bool, reading: Reading,
-    backend: str, port: str | None, baud: int, virtual: bool, yes: bool, journal: Path | None,
+    backend: str, port: str | None, baud: int, virtual: bool, yes: bool, journal: Path | None, take: Take | None,
 ) -> None:  # fmt: skip
     """Run a program: checked first, homed if need be, then under the controller, to its end.
 
@@ -42,8 +45,9 @@ def command(
     if (backend == "grbl") != (port is not None):
         raise click.UsageError("--backend grbl and --port DEVICE go together")
     if port is not None:
-        if virtual or journal is not None:
-            raise click.UsageError("a board has its own clock and no journal: leave --virtual and --journal out")
+        if virtual or journal is not None or take is not None:
+            raise click.UsageError("a board has its own clock and no journal: leave --virtual, --journal and --record "
+                                   "out")  # fmt: skip
         from trochia.cli import run_board  # noqa: PLC0415 - only where there is one
 
         run_board.run(program, machine_name, place, profile, reading=reading, port=port, baud=baud, yes=yes,
@@ -66,15 +70,20 @@ def command(
     twin = LiveTwin(job.machine, switches=switches_of(job.machine))
     clock = 0.0 if virtual else time.monotonic()
     runtime = Runtime(twin, journal=journal, work=WorkState().placed(**place), now=clock)
+    if take is not None:
+        runtime.recorder.start(take, program=job.name)
     session = _Session(runtime, virtual=virtual, now=clock, quiet=as_json)
     try:
         session.go(job.name, job.text.decode("latin-1"), yes=yes)
     finally:
         session.close()
+    if take is not None:
+        tell_recorded(take, runtime.recorder.failed, quiet=as_json)
     status = session.status
     if as_json:
         options.print_json({"ok": not status.alarms, "state": status.state, "time_s": session.took,
-                            "alarms": [alarm.message for alarm in status.alarms]})  # fmt: skip
+                            "alarms": [alarm.message for alarm in status.alarms],
+                            "recording": None if take is None else str(take.path)})  # fmt: skip
     sys.exit(1 if status.alarms else 0)
 
 

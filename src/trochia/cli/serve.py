@@ -50,9 +50,11 @@ def users_option(command: Callable[..., None]) -> Callable[..., None]:
 @click.option("--journal", type=click.Path(file_okay=False, path_type=Path), metavar="DIR",
               help="Folder of the machine's journal, and in it of the log of who asked for what; "
                    "without it nothing is kept.")  # fmt: skip
+@click.option("--recordings", type=click.Path(file_okay=False, path_type=Path), metavar="DIR",
+              help="Folder of the recordings that clients start; without it they cannot.")  # fmt: skip
 def command(
     *, machine_name: str, backend: str, port: int, host: str, allow: tuple[str, ...], certificate: Path | None,
-    key: Path | None, users_file: Path | None, journal: Path | None,
+    key: Path | None, users_file: Path | None, journal: Path | None, recordings: Path | None,
 ) -> None:  # fmt: skip
     """Serve a machine: a page with its state and STOP, an HTTP and WebSocket interface, a Python client.
 
@@ -80,13 +82,13 @@ def command(
         click.echo(f"user operator, password {password}\nshown this once; kept in {users.path} as a key only")
     socket = listen(host, port)
     doors = Doors.of(int(socket.getsockname()[1]), allow, secure=certificate is not None)
-    runtime = _runtime(machine, journal)
+    runtime = _runtime(machine, journal, recordings)
     desk = Desk(runtime, users, doors, log=None if journal is None else journal / "access")
     tls = (certificate, key) if certificate is not None and key is not None else None
     _serve(runtime, desk, Served(desk, socket, tls), _address(doors, host))
 
 
-def _runtime(machine: Machine, journal: Path | None) -> Runtime:
+def _runtime(machine: Machine, journal: Path | None, recordings: Path | None) -> Runtime:
     import time  # noqa: PLC0415
 
     from trochia.backends.live_twin import LiveTwin  # noqa: PLC0415 - only what moves needs a backend
@@ -94,7 +96,7 @@ def _runtime(machine: Machine, journal: Path | None) -> Runtime:
     from trochia.controller.runtime import Runtime  # noqa: PLC0415
 
     twin = LiveTwin(machine, switches=switches_of(machine))
-    return Runtime(twin, journal=journal, now=time.monotonic())
+    return Runtime(twin, journal=journal, recordings=recordings, now=time.monotonic())
 
 
 def _address(doors: Doors, host: str) -> str:

@@ -18,8 +18,11 @@ from trochia.backends.live import Orders, Trouble
 from trochia.controller.controller import Controller
 from trochia.controller.interrupted import interrupted, keep
 from trochia.controller.journal import Journal
+from trochia.controller.recording import Recorder
+from trochia.controller.recording_commands import taken_by
 from trochia.errors import LinkError
 from trochia.messages import Cause
+from trochia.messages.command import Record, RecordStop
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -50,22 +53,29 @@ class Runtime:
     ----------
     journal
         Folder of the journal; None: nothing is kept.
+    recordings
+        Folder of the recordings that commands ask for; None: they are refused.
     now
         When it begins, of the clock that is used [s].
 
     Attributes
     ----------
+    recorder
+        Records every servo tick when it is asked to.
     watchers
         Called at the end of each turn, in its thread, with the status and the backend's report; they must be quick.
     """
 
     def __init__(
-        self, backend: SegmentBackend, *, journal: Path | None = None, work: WorkState | None = None, now: float = 0.0
-    ) -> None:
+        self, backend: SegmentBackend, *, journal: Path | None = None, recordings: Path | None = None,
+        work: WorkState | None = None, now: float = 0.0,
+    ) -> None:  # fmt: skip
         self.backend = backend
         self.controller = Controller(backend.machine, backend.open(now), latency=backend.latency,
                                      ahead=backend.ahead, work=work)  # fmt: skip
         self.load = Load()
+        self.recorder = Recorder(backend, turn=PERIOD)
+        self._recordings = recordings
         self._open(journal)
         self._commands: SimpleQueue[tuple[AnyCommand, Future[Ack]]] = SimpleQueue()
         self.watchers: list[Callable[[Status, Report], None]] = []
@@ -97,19 +107,14 @@ class Runtime:
         except LinkError as error:
             controller.fault(Trouble(cause=Cause.LINK, value=0.0), str(error))
             report = controller.report
-        state, taken = controller.state, False
+        state = controller.state
+        failed = self.recorder.turn(report, state)
+        if failed:
+            controller.note("recording", text=f"ended by itself: {failed}")
         orders = controller.step(now, report)
-        answers: list[tuple[Future[Ack], Ack]] = []
-        while True:
-            try:
-                command, answer = self._commands.get_nowait()
-            except Empty:
-                break
-            answers.append((answer, controller.command(command, now)))
-            orders += controller.orders()
-            taken = True
+        answers = self._take_commands(now, orders)
         self._order(orders, now)
-        if taken or controller.state is not state or now - self._status.time >= STATUS - PERIOD / 2:
+        if answers or controller.state is not state or now - self._status.time >= STATUS - PERIOD / 2:
             self._status = controller.status(now)
         entries, controller.journal = controller.journal, []
         for kind, data in entries:
@@ -122,6 +127,21 @@ class Runtime:
             if answer.set_running_or_notify_cancel():
                 answer.set_result(ack)
         return self._status
+
+    def _take_commands(self, now: float, orders: list[Orders]) -> list[tuple[Future[Ack], Ack]]:
+        """Take the commands that have come, put what they order behind ``orders``; return their answers."""
+        answers: list[tuple[Future[Ack], Ack]] = []
+        while True:
+            try:
+                command, answer = self._commands.get_nowait()
+            except Empty:
+                return answers
+            if isinstance(command, Record | RecordStop):
+                ack = taken_by(self.recorder, command, self._recordings, self.controller)
+            else:
+                ack = self.controller.command(command, now)
+                orders += self.controller.orders()
+            answers.append((answer, ack))
 
     def command(self, command: AnyCommand, now: float) -> Ack:
         """Take a command in a turn of its own: for virtual time."""
@@ -140,6 +160,7 @@ class Runtime:
         if self._thread is not None:
             self._thread.join()
         self.backend.close()
+        self.recorder.stop(wait=True)
         self._write(self._status.time, "closed", {})
         if self._journal is not None:
             self._journal.close()

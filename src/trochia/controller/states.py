@@ -49,7 +49,7 @@ MOVING = frozenset({
 })  # fmt: skip
 
 #: commands that are taken in every state and change none
-ALWAYS = ("acknowledge", "answer", "override", "switches")
+ALWAYS = ("acknowledge", "answer", "override", "record", "record-stop", "switches")
 #: commands that are taken where no motion and no job is under way, and change no state
 QUIET = ("arm-beam", "load", "set-output", "unload", "work-zero")
 

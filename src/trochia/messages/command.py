@@ -173,9 +173,30 @@ class Answer(Command, frozen=True, kw_only=True, tag="answer"):
     yes: bool = True
 
 
+class Record(Command, frozen=True, kw_only=True, tag="record"):
+    """Record every servo tick from now on, in the folder of recordings.
+
+    ``name`` is that of the recording, else the next free ``recording-N``; ``channels`` may have ``*`` and ``?``, none
+    are all.  ``triggers`` are ``hold``, ``alarm``, ``line N``, with ``before`` and ``after`` [s] around each; none: all
+    the time.  ``limit`` is how many bytes it takes at most, the oldest dropped.
+    """
+
+    name: Annotated[str, Meta(pattern="^([A-Za-z0-9][A-Za-z0-9_.-]{0,63})?$")] = ""
+    channels: Annotated[tuple[Annotated[str, Meta(max_length=64)], ...], Meta(max_length=64)] = ()
+    triggers: Annotated[tuple[Annotated[str, Meta(max_length=32)], ...], Meta(max_length=32)] = ()
+    before: Annotated[float, Meta(ge=0.0, le=60.0)] = 1.0
+    after: Annotated[float, Meta(ge=0.0, le=3600.0)] = 1.0
+    limit: Annotated[int, Meta(ge=1 << 20, le=1 << 34)] = 256 << 20
+
+
+class RecordStop(Command, frozen=True, kw_only=True, tag="record-stop"):
+    """End the recording under way; the answer tells where it is."""
+
+
 AnyCommand = (
     Enable | Disable | EmergencyStop | Reset | Acknowledge | Load | Unload | Run | RunFrom | Hold | Resume | Step
-    | Abort | Switches | Override | Mdi | Jog | JogStop | JogBy | JogTo | Home | WorkZero | SetOutput | ArmBeam | Answer
+    | Abort | Switches | Override | Mdi | Jog | JogStop | JogBy | JogTo | Home | WorkZero | SetOutput | ArmBeam | Record
+    | RecordStop | Answer
 )  # fmt: skip
 
 

@@ -7,6 +7,7 @@ from trochia.recorder.figures import Figures, figures
 from trochia.recorder.gather import gather
 from trochia.recorder.reader import read
 from trochia.recorder.recording import Recording
+from trochia.recorder.ring import RingWriter, parts_of
 from trochia.recorder.writer import RecordingWriter, save, write
 
 __all__ = [
@@ -17,9 +18,11 @@ __all__ = [
     "Header",
     "Recording",
     "RecordingWriter",
+    "RingWriter",
     "compare",
     "figures",
     "gather",
+    "parts_of",
     "read",
     "save",
     "to_csv",

@@ -33,11 +33,14 @@ class Channel:
         Unit text, empty for a bare number: ``"mm"``, ``"degree"``, ``"mm/s"``, ``"count"``, ``"step"``.
     dtype
         Little-endian scalar, spelled as numpy spells it.
+    values
+        What the values 0, 1, 2, … are called, where they are names by number.
     """
 
     name: str
     unit: str = ""
     dtype: Scalar = "<f8"
+    values: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if not self.name:

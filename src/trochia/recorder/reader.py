@@ -1,8 +1,12 @@
-"""Reading a recording: the samples are mapped, not loaded, so an hour's recording opens at once."""
+"""Reading a recording: the samples are mapped, not loaded, so an hour's recording opens at once.
+
+Of a folder of numbered parts (:mod:`trochia.recorder.ring`) the last that follow each other without a gap are loaded.
+"""
 
 from __future__ import annotations
 
 import zlib
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +14,7 @@ import numpy as np
 
 from trochia.errors import RecordingError
 from trochia.recorder.recording import Recording
+from trochia.recorder.ring import parts_of
 from trochia.recorder.sidecar import PARTIAL, SAMPLES, SIDECAR, decode, raw
 
 if TYPE_CHECKING:
@@ -19,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def read(path: str | Path, *, verify: bool = False) -> Recording:
-    """Return the recording in a folder; one that was cut short ends at its last whole record.
+    """Return the recording in a folder, or in its parts; one that was cut short ends at its last whole record.
 
     Parameters
     ----------
@@ -33,7 +38,13 @@ def read(path: str | Path, *, verify: bool = False) -> Recording:
     RecordingError
         When there is no recording, or it is foreign, newer than this program, or damaged.
     """
-    folder = _folder(Path(path))
+    parts = parts_of(Path(path))
+    if parts:
+        return _joined([_read(part, verify=verify) for part in parts])
+    return _read(_folder(Path(path)), verify=verify)
+
+
+def _read(folder: Path, *, verify: bool) -> Recording:
     description = decode(folder / SIDECAR)
     records = _records(folder / SAMPLES, description)
     if verify and description.crc32 is not None and zlib.crc32(raw(records)) != description.crc32:
@@ -45,6 +56,26 @@ def read(path: str | Path, *, verify: bool = False) -> Recording:
         channels={channel.name: records[channel.name] for channel in description.header.channels},
         complete=description.samples is not None,
     )
+
+
+def _joined(parts: list[Recording]) -> Recording:
+    """Return the last parts that follow each other without a gap, as one."""
+    row = parts[-1:]
+    for part in reversed(parts[:-1]):
+        if part.header.channels != row[0].header.channels or abs(_end(part) - row[0].start) > 0.5 * part.period:
+            break
+        row.insert(0, part)
+    if len(row) == 1:
+        return row[0]
+    samples = sum(len(part) for part in row)
+    header = replace(row[0].header, duration=max(samples - 1, 0) * row[0].period)
+    channels = {name: np.concatenate([part[name] for part in row]) for name in row[0].channels}
+    return Recording(header=header, channels=channels, complete=row[-1].complete)
+
+
+def _end(part: Recording) -> float:
+    """Return when the sample after a part's last would be [s]."""
+    return part.start + len(part) * part.period
 
 
 def _folder(path: Path) -> Path:

@@ -33,13 +33,14 @@ class _Mark(msgspec.Struct):
     format_version: int
 
 
-class _Column(msgspec.Struct):
+class _Column(msgspec.Struct, omit_defaults=True):
     """A channel and where it stands in a record [byte]."""
 
     name: str
     unit: str
     dtype: Scalar
     offset: int
+    values: tuple[str, ...] = ()
 
 
 class _Sidecar(msgspec.Struct):
@@ -84,7 +85,7 @@ def encode(description: Description) -> bytes:
         start_s=header.start,
         duration_s=header.duration,
         record_bytes=record.itemsize,
-        channels=[_Column(c.name, c.unit, c.dtype, fields[c.name][1]) for c in header.channels],
+        channels=[_Column(c.name, c.unit, c.dtype, fields[c.name][1], c.values) for c in header.channels],
         complete=description.samples is not None,
         samples=description.samples,
         crc32=None if description.crc32 is None else f"{description.crc32:08x}",
@@ -134,7 +135,7 @@ def _described(sidecar: _Sidecar) -> Description:
         origin=sidecar.origin,
         created_by=sidecar.created_by,
         format_version=sidecar.format_version,
-        channels=tuple(Channel(name=c.name, unit=c.unit, dtype=c.dtype) for c in columns),
+        channels=tuple(Channel(name=c.name, unit=c.unit, dtype=c.dtype, values=c.values) for c in columns),
     )
     layout: Any = {
         "names": [c.name for c in columns],

@@ -69,10 +69,10 @@ class RecordingWriter:
     def __enter__(self) -> Self:
         if self.path.exists() and not (self.path / SIDECAR).is_file():
             raise RecordingError(f"{self.path} exists and is no recording", hint="Give another name or move it away.")
-        _discard(self.partial)
+        discard(self.partial)
         self.partial.mkdir(parents=True)
+        self._file = (self.partial / SAMPLES).open("wb")  # before the sidecar: whoever is described can be read
         self._describe(Description(header=self.header, record=self.header.record))
-        self._file = (self.partial / SAMPLES).open("wb")
         return self
 
     def write(self, block: Mapping[str, NDArray[Any]]) -> None:
@@ -120,15 +120,15 @@ def _replace(source: Path, target: Path) -> None:
     """Give a folder its final name; an older one of that name goes after the new one has come."""
     old = target.with_name(target.name + ".old")
     if target.exists():
-        _discard(old)
+        discard(old)
         target.rename(old)
     source.rename(target)
-    _discard(old)
+    discard(old)
 
 
-def _discard(folder: Path) -> None:
-    """Remove a recording's folder, and nothing that is not a recording's."""
+def discard(folder: Path) -> None:
+    """Remove a recording's folder, and nothing that is not a recording's; the sidecar first: half gone is gone."""
     if folder.is_dir():
-        for name in (SAMPLES, SIDECAR, SIDECAR + ".new"):
+        for name in (SIDECAR, SIDECAR + ".new", SAMPLES):
             (folder / name).unlink(missing_ok=True)
         folder.rmdir()
