@@ -122,12 +122,6 @@ class Report:
         return self.queued <= 0.0 and not self.velocity.any()
 
 
-class SegmentBackend(Protocol):
-    """Runs through segments, in its own time.
-
-    Attributes
-    ----------
-    latency
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ticks:
     """What happened at servo ticks that follow each other, none left out; a backend's report with time in it.
@@ -170,6 +164,12 @@ class Tapped(Protocol):
     tap: Callable[[Ticks], None] | None
 
 
+class SegmentBackend(Protocol):
+    """Runs through segments, in its own time.
+
+    Attributes
+    ----------
+    latency
         How long an order takes to act, at most [s]: what lies nearer than that in stream time cannot be replaced.
     ahead
         How much motion it wants to hold [s].

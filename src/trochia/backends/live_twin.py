@@ -49,9 +49,9 @@ class LiveTwin:
         Levels of inputs that are no switches; a test or a person sets them.
     faulty
         Joints whose drive reports a fault.
-    """
     tap
         Is told of every servo tick.
+    """
 
     kind: ClassVar[str] = "twin"
 
@@ -73,9 +73,9 @@ class LiveTwin:
         names = (*BUILT_IN, *(channel.name for channel in machine.io if not channel.kind.endswith("input")))
         self.outputs = dict.fromkeys(names, 0.0)
         self.faulty: set[str] = set()
+        self.tap: Callable[[Ticks], None] | None = None
         self._switches = dict(switches or {})
         self._names = [joint.name for joint in machine.joints]
-        self.tap: Callable[[Ticks], None] | None = None
         self._offset = -real  # what the controller calls a position, less where it really is
         self._executor = Executor(np.zeros(joints), machine.servo_period)
         self._now = 0.0
@@ -186,6 +186,7 @@ class LiveTwin:
             self._now += ticks * self.machine.servo_period
             self._rest()
             self._outputs_due()
+            self._tell_rest(ticks, settling=settling)
             return ticks
         braking = self._executor.braking
         told = self._executor.run(ticks, one=bool(self._watch))
@@ -195,7 +196,7 @@ class LiveTwin:
         self._now += told.ticks * self.machine.servo_period
         self._velocity, self._line = told.velocity, told.line
         self._light(told)
-            self._tell_rest(ticks, settling=settling)
+        self._tell(told)
         self._outputs_due()
         self._look_at_inputs()
         self._look_at_joints()
@@ -206,18 +207,6 @@ class LiveTwin:
         lit = self._lit and not self._executor.braking and self._executor.rate >= 1.0
         self._beam = told.power if lit and bool(told.velocity.any()) else 0.0
 
-        self._tell(told)
-    def _outputs_due(self) -> None:
-        while self._timed and self._timed[0][0] <= self._executor.executed + 1e-9:
-            _, name, value = self._timed.pop(0)
-            self.outputs[name] = value
-
-    def _look_at_inputs(self) -> None:
-        """Brake at an input that is watched."""
-        levels = self._read() if self._watch else {}
-        for watch in self._watch:
-            if levels.get(watch.name) == watch.level:
-                self._caught = (watch.name, self._executor.commanded)
     def _tell(self, told: Told) -> None:
         """Tell who listens of ticks in motion."""
         if self.tap is None:
@@ -243,6 +232,17 @@ class LiveTwin:
             beam=np.zeros(ticks, np.float32), line=np.full(ticks, self._line, np.uint32),
         ))  # fmt: skip
 
+    def _outputs_due(self) -> None:
+        while self._timed and self._timed[0][0] <= self._executor.executed + 1e-9:
+            _, name, value = self._timed.pop(0)
+            self.outputs[name] = value
+
+    def _look_at_inputs(self) -> None:
+        """Brake at an input that is watched."""
+        levels = self._read() if self._watch else {}
+        for watch in self._watch:
+            if levels.get(watch.name) == watch.level:
+                self._caught = (watch.name, self._executor.commanded)
                 self._watch, self._executor.braking, self._beam = (), True, 0.0
                 return
 

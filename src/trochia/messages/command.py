@@ -166,13 +166,6 @@ class ArmBeam(Command, frozen=True, kw_only=True, tag="arm-beam"):
     on: bool
 
 
-class Answer(Command, frozen=True, kw_only=True, tag="answer"):
-    """Answer what the machine asked of its operator: a tool is in, a question is confirmed or not."""
-
-    request: int
-    yes: bool = True
-
-
 class Record(Command, frozen=True, kw_only=True, tag="record"):
     """Record every servo tick from now on, in the folder of recordings.
 
@@ -191,6 +184,13 @@ class Record(Command, frozen=True, kw_only=True, tag="record"):
 
 class RecordStop(Command, frozen=True, kw_only=True, tag="record-stop"):
     """End the recording under way; the answer tells where it is."""
+
+
+class Answer(Command, frozen=True, kw_only=True, tag="answer"):
+    """Answer what the machine asked of its operator: a tool is in, a question is confirmed or not."""
+
+    request: int
+    yes: bool = True
 
 
 AnyCommand = (
