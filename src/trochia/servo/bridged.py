@@ -4,7 +4,7 @@ In: levels of the bridge's pins and a duty, tick by tick; lengths in pulses.  Ou
 slip: how far the screw has gone beyond what was asked for.
 
 A move runs at full duty, slows down for its last two turns, and ends with the brake: both inputs alike and the enable
-on for half a second, then off.  Braking is not immediate, so every motion ends with a slip, which the next one takes over.
+on for half a second, then off.  Braking is not immediate, so every motion ends with a slip; the next one takes it over.
 """
 
 from __future__ import annotations

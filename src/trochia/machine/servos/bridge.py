@@ -1,6 +1,6 @@
 """A brushed motor behind an H bridge: what its inputs do, and how far it runs on.
 
-In: levels of the bridge's inputs; a plant and a speed.  Out: what becomes of the winding; ways and times in closed form.
+In: levels of the bridge's inputs; a plant and a speed.  Out: what becomes of the winding; closed forms of the way.
 
     enable  inputs    winding                          enable  inputs   winding
     0       any       open: the motor runs free        1       unlike   driven one way or the other
