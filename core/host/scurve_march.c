@@ -7,11 +7,13 @@
 static const double SUMMED = 1.0 + 1e-12;
 /* Forward a little less than back in time: then forward no ceiling is followed above what the pass back has. */
 static const double SLACK[2] = {1.0 + 1e-12, 1.0 + 1e-13};
-static const double ENDED = 1e-13;   /* less than this part of it is left of a: none is */
-static const double CLOSE = 1e-9;    /* nearer to the ceiling than this part, speed stays */
-static const double SHARE = 0.35;    /* of what v^2 is below the ceiling, taken at one go where budgets fall with v */
-static const double LITTLE_A = 0.75; /* a budget that falls no lower until the ceiling is taken there at once */
-static const double TINY = 1e-300;
+static const double ENDED = 1e-13;     /* less than this part of it is left of a: none is */
+static const double CLOSE = 1e-9;      /* nearer to the ceiling than this part, speed stays */
+static const double SHARE = 0.35;      /* of what v^2 is below the ceiling, taken at one go where budgets fall with v */
+static const double LITTLE_A = 0.75;   /* a budget that falls no lower until the ceiling is taken there at once */
+static const double LEAST_JERK = 1e-6; /* part of its jerk that turning must leave to an arrest */
+/* An arrest that is too fast by less is followed to its end: by rounding of one that is not. */
+static const double GRAZED = 1e-9;
 static const double CLOSE_TIME = 1e-9;
 enum { STEPS = 7 };
 
@@ -77,6 +79,16 @@ static double arrest_leg(const trochia_stretch *stretch, double *rem, double v, 
     return jerk;
 }
 
+/* Of the greatest a at the start of an arrest's leg: what its highest speed leaves, or what its own does, less what is
+ * lost of that faster than a falls. */
+static double arrest_most(const trochia_stretch *stretch, double v, double a, double jerk, double high, double time) {
+    if (!(stretch->free < INFINITY))
+        return 1.0 / stretch->along_a;
+    double lost = 2.0 * stretch->bend_a * high * a / stretch->along_a - jerk;
+    return trochia_larger(trochia_acceleration_left(stretch, high),
+                          trochia_acceleration_left(stretch, v) - trochia_larger(lost, 0.0) * time);
+}
+
 trochia_arrest trochia_arrest_from(const trochia_track *track, int64_t i, double rem, double v, double a,
                                    trochia_leg *legs, uint64_t room, uint64_t *made) {
     trochia_arrest out = {.margin = INFINITY, .v = v, .s = place(track, i, rem), .stretch = i};
@@ -84,16 +96,13 @@ trochia_arrest trochia_arrest_from(const trochia_track *track, int64_t i, double
     while (a > 0.0) {
         const trochia_stretch *stretch = &track->stretches[i];
         double high, time, before = rem, jerk = arrest_leg(stretch, &rem, v, a, &high, &time);
-        /* a falls at least as fast as what the rising speed leaves for it: then it need only be kept at the start */
-        int falls = jerk * stretch->along_a >= 2.0 * stretch->bend_a * high * a;
-        double most =
-            stretch->free < INFINITY ? trochia_acceleration_left(stretch, falls ? v : high) : 1.0 / stretch->along_a;
+        double most = arrest_most(stretch, v, a, jerk, high, time);
         if (most * SUMMED < a)
             out.margin = most / a - 1.0;
         out.margin = trochia_smaller(out.margin, stretch->ceiling * slack / v - 1.0);
-        if (!(jerk > 0.0))
-            out.margin = trochia_smaller(out.margin, trochia_smaller(jerk * stretch->along_j, -TINY));
-        if (out.margin < 0.0)
+        if (stretch->free < INFINITY)
+            out.margin = trochia_smaller(out.margin, jerk * stretch->along_j - LEAST_JERK);
+        if (out.margin < -GRAZED)
             return out;
         note(track, i, before, rem, v, a, -jerk, time, legs, room, made);
         double first = a;
@@ -104,7 +113,7 @@ trochia_arrest trochia_arrest_from(const trochia_track *track, int64_t i, double
         out.v = v;
         out.s = place(track, i, rem);
         out.stretch = i;
-        if (out.margin < 0.0)
+        if (out.margin < -GRAZED)
             return out;
         if (a == 0.0) {
             if (is_end(track, i, v))

@@ -1,9 +1,10 @@
 /* The last moment at which a pass can still bring a to 0 before it would be too fast, or beyond the pass back. */
 #include "host/scurve_march.h"
 
-/* Exact enough, on lines and where the path bends: part of a run's time, and of a margin. */
-static const double EXACT[2] = {1e-13, 1e-8};
-static const double NEAR[2] = {1e-10, 1e-7};
+/* Exact enough: part of a run's time, and of a margin.  What is coarser here makes a plan depend on where it began. */
+static const double EXACT = 1e-13, NEAR = 1e-10;
+/* Motion that may only just be arrested is: there is no way over what rounding leaves of a margin. */
+static const double STILL = 1e-9;
 /* Places of a leg that has been cut, where arrests are tried. */
 static const double PLACES[] = {0.5, 0.8, 0.95, 0.99};
 enum { PARTS = 1, PROBED = 4, MOST = 60 };
@@ -31,6 +32,8 @@ static double first_failure(const trochia_track *track, int64_t i, const trochia
     *low = 0.0;
     if (stretch->bend_a == 0.0 && stretch->twist_j == 0.0)
         return run->time;
+    if (run->count && run->legs[0].a > 0.0 && trochia_probe(track, NULL, i, run, 0.0, &unused).margin <= STILL)
+        return 0.0;
     for (int k = 0; k < run->count; time += run->legs[k++].duration)
         for (int part = 1; part <= PARTS; part++) {
             double at = time + run->legs[k].duration * part / PARTS;
@@ -50,10 +53,12 @@ typedef struct {
 
 static void narrow(const trochia_track *track, const trochia_course *course, int64_t i, const trochia_run *run,
                    double over, trochia_bracket *b) {
-    int unused, stayed = 0, bends = track->stretches[i].free < INFINITY;
+    int unused, stayed = 0;
     b->arrest = trochia_probe(track, course, i, run, b->low, &unused);
     double under = trochia_smaller(trochia_larger(b->arrest.margin, 0.0), 1.0);
-    for (int k = 0; k < MOST && b->high - b->low > EXACT[bends] * run->time; k++) {
+    if (b->low == 0.0 && under <= STILL && run->count && run->legs[0].a > 0.0)
+        return;
+    for (int k = 0; k < MOST && b->high - b->low > EXACT * run->time; k++) {
         double time = b->low + under * (b->high - b->low) / (under - over);
         if (k % 6 == 5 || !(time > b->low) || !(time < b->high))
             time = 0.5 * (b->low + b->high);
@@ -68,7 +73,7 @@ static void narrow(const trochia_track *track, const trochia_course *course, int
             b->low = time;
             b->arrest = found;
             under = trochia_smaller(found.margin, 1.0);
-            if (under <= NEAR[bends])
+            if (under <= NEAR)
                 break;
         } else {
             double part = 1.0 - found.margin / over;
@@ -109,8 +114,8 @@ double trochia_search(const trochia_track *track, const trochia_course *course, 
                       trochia_arrest *arrest, int *joins, int *barrier) {
     double low = 0.0, high = course ? run->time : first_failure(track, i, run, &low);
     *arrest = trochia_probe(track, course, i, run, high, joins);
-    *barrier = 0;
-    if (arrest->margin >= 0.0)
+    *barrier = high == 0.0 && arrest->margin < 0.0 && arrest->barrier;
+    if (arrest->margin >= 0.0 || high == 0.0)
         return high;
     trochia_bracket b = {.low = low, .high = high, .joins = *joins, .barrier = arrest->barrier};
     narrow(track, course, i, run, arrest->margin, &b);
