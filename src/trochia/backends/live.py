@@ -55,6 +55,8 @@ class Orders:
         orders with a ``watch``: they were sent before anyone knew.
     place
         What the joints' present positions are called from now on [mm or degree], by joint; only at rest.
+    inputs
+        Levels of inputs that are no switches of an axis; only a twin takes them.
     """
 
     segments: Segments | None = None
@@ -66,6 +68,7 @@ class Orders:
     timed: tuple[tuple[float, str, float], ...] = ()
     watch: tuple[Watch, ...] | None = None
     place: Mapping[str, float] = field(default_factory=dict[str, float])
+    inputs: Mapping[str, float] = field(default_factory=dict[str, float])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -97,7 +100,10 @@ class Report:
     encoder, actual
         What encoders say, and where the load is, (joints,); NaN where there is none, None where nobody knows.
     caught
-        Joint positions at the instant a watched input took its level, and which; None: not yet.
+        Joint positions at the instant a watched input took its level, by encoders where there are some, and which;
+        None: not yet.
+    inputs
+        Levels by name: True or False, or the value of an analogue one.
     """
 
     time: float
@@ -111,7 +117,7 @@ class Report:
     enabled: bool
     beam: float
     line: int
-    inputs: Mapping[str, bool]
+    inputs: Mapping[str, float]
     outputs: Mapping[str, float]
     troubles: tuple[Trouble, ...] = ()
     caught: tuple[str, NDArray[np.float64]] | None = None

@@ -13,6 +13,7 @@ import numpy as np
 from trochia.backends.executor import Executor
 from trochia.backends.live import BUILT_IN, Orders, Report, Ticks, Trouble
 from trochia.backends.plant import Plant
+from trochia.backends.switches import crossing
 from trochia.errors import LocalProtocolError
 from trochia.messages import Cause
 
@@ -69,7 +70,8 @@ class LiveTwin:
         self.latency = machine.servo_period
         self.ahead = ahead
         self.plant = Plant(machine, real)
-        self.inputs = {channel.name: False for channel in machine.io if channel.kind == "input"}
+        self.inputs: dict[str, float] = {c.name: False for c in machine.io if c.kind == "input"}
+        self.inputs |= {channel.name: 0.0 for channel in machine.io if channel.kind == "analog-input"}
         names = (*BUILT_IN, *(channel.name for channel in machine.io if not channel.kind.endswith("input")))
         self.outputs = dict.fromkeys(names, 0.0)
         self.faulty: set[str] = set()
@@ -123,6 +125,7 @@ class LiveTwin:
             self._rejoin()
         self._enabled = self._enabled if orders.enable is None else orders.enable
         self._set_outputs(orders)
+        self._set_inputs(orders.inputs)
         if orders.lit is not None:
             self._lit = orders.lit
             self._beam = self._beam if orders.lit else 0.0
@@ -145,7 +148,13 @@ class LiveTwin:
             self._timed = [entry for entry in self._timed if entry[0] < orders.at]
         self._timed = sorted([*self._timed, *orders.timed])
 
-    def _read(self) -> dict[str, bool]:
+    def _set_inputs(self, levels: Mapping[str, float]) -> None:
+        for name in levels:
+            if name not in self.inputs:
+                raise LocalProtocolError(f"there is no input {name!r}", hint=f"There are: {', '.join(self.inputs)}")
+        self.inputs |= levels
+
+    def _read(self) -> dict[str, float]:
         return self.inputs | {name: switch(self.plant.load) for name, switch in self._switches.items()}
 
     def _place(self, names: Mapping[str, float]) -> None:
@@ -189,6 +198,7 @@ class LiveTwin:
             self._tell_rest(ticks, settling=settling)
             return ticks
         braking = self._executor.braking
+        before = (self.plant.load.copy(), self._measured()) if self._watch else None
         told = self._executor.run(ticks, one=bool(self._watch))
         if self._executor.rate == 0.0 and not braking:
             self._troubles.append(Trouble(cause=Cause.UNDERRUN))
@@ -198,7 +208,8 @@ class LiveTwin:
         self._light(told)
         self._tell(told)
         self._outputs_due()
-        self._look_at_inputs()
+        if before is not None:
+            self._look_at_inputs(*before)
         self._look_at_joints()
         return told.ticks
 
@@ -237,12 +248,19 @@ class LiveTwin:
             _, name, value = self._timed.pop(0)
             self.outputs[name] = value
 
-    def _look_at_inputs(self) -> None:
-        """Brake at an input that is watched."""
-        levels = self._read() if self._watch else {}
+    def _measured(self) -> NDArray[np.float64]:
+        """Return where the joints are by their encoders, or where they are told to be without one (joints,)."""
+        encoder = self.plant.encoder() + self._offset
+        return np.where(np.isfinite(encoder), encoder, self._executor.commanded)
+
+    def _look_at_inputs(self, loads: NDArray[np.float64], measured: NDArray[np.float64]) -> None:
+        """Brake at an input that is watched; a switch of the machine is caught inside the tick that began there."""
+        levels = self._read()
         for watch in self._watch:
             if levels.get(watch.name) == watch.level:
-                self._caught = (watch.name, self._executor.commanded)
+                switch = self._switches.get(watch.name)
+                share = 1.0 if switch is None else crossing(switch, loads, self.plant.load, level=watch.level)
+                self._caught = (watch.name, measured + share * (self._measured() - measured))
                 self._watch, self._executor.braking, self._beam = (), True, 0.0
                 return
 

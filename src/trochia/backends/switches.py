@@ -13,18 +13,47 @@ if TYPE_CHECKING:
 
     from trochia.machine.axes import Axis
     from trochia.machine.machine import Machine
+    from trochia.machine.probe import Part
 
     Switch = Callable[[NDArray[np.float64]], bool]
 
 
 def switches_of(machine: Machine) -> dict[str, Switch]:
-    """Return whether each limit and home switch is active, by its input's name, from joint positions (joints,)."""
-    inverse = np.linalg.pinv(machine.kinematics.matrix)
+    """Return whether each switch of an axis and the probe is active, by input, from joint positions (joints,)."""
+    inverse = np.asarray(np.linalg.pinv(machine.kinematics.matrix), np.float64)
     found: dict[str, Switch] = {}
     for row, axis in zip(inverse, machine.axes, strict=True):
         for name, at, sign in _of(axis):
             found[name] = _switch(row, at, sign)
+    if machine.probe is not None and machine.probe.part is not None:
+        found[machine.probe.input] = _touch(machine, inverse, machine.probe.part)
     return found
+
+
+def crossing(switch: Switch, before: NDArray[np.float64], after: NDArray[np.float64], *, level: bool) -> float:
+    """Return at which share of the way (joints,) from one place to another a switch takes a level; it has it there."""
+    low, high = 0.0, 1.0
+    while high - low > 1e-4:
+        middle = 0.5 * (low + high)
+        if switch(before + middle * (after - before)) == level:
+            high = middle
+        else:
+            low = middle
+    return high if switch(before) != level else 0.0
+
+
+def _touch(machine: Machine, inverse: NDArray[np.float64], part: Part) -> Switch:
+    """Return whether the controlled point is inside a part."""
+    sides = {"X": (part.left, part.right), "Y": (part.front, part.back), "Z": (None, part.top)}
+    bounds = [sides.get(axis.name, (None, None)) for axis in machine.axes]
+    low = np.array([-np.inf if bound[0] is None else bound[0] for bound in bounds])
+    high = np.array([np.inf if bound[1] is None else bound[1] for bound in bounds])
+
+    def touches(joints: NDArray[np.float64]) -> bool:
+        place = inverse @ joints
+        return bool(np.all((place >= low) & (place <= high)))
+
+    return touches
 
 
 def _of(axis: Axis) -> Iterator[tuple[str, float, float]]:

@@ -12,11 +12,12 @@ import numpy as np
 
 from trochia.backends.live import Orders, Trouble
 from trochia.controller.alarms import TROUBLES, Alarms
+from trochia.controller.asking import go_on, probe
 from trochia.controller.doings import OUTPUTS_OFF
 from trochia.controller.guards import Guards
 from trochia.controller.handlers import HANDLERS
 from trochia.controller.interrupted import Interrupted, work_entry
-from trochia.controller.job import Job
+from trochia.controller.job import BLOCK_END, Job
 from trochia.controller.jog import Jog
 from trochia.controller.readying import MDI, Readier
 from trochia.controller.states import MOVING, TABLE, Event, State, legal
@@ -215,6 +216,7 @@ class Controller:
                     name=made.name, text=made.text, start=start, work=work_entry(made.found), line=self.report.line,
                     block_delete=self.switches.block_delete, position=self.position(), closed=True,
                     move=int(point["move"]), distance=point["distance"], done_s=point["done_s"],
+                    answers=made.answers or (),
                 )  # fmt: skip
         self.activity = self.running = self.request = None
 
@@ -259,6 +261,11 @@ class Controller:
         target = TABLE.get((self.state, event))
         if target is None:
             return
+        if isinstance(activity, Job) and event in {Event.PROBE, Event.CONTACT, Event.ANSWER}:
+            self.pending.append(activity.finish(whole=True))
+            self.enter(target)
+            (probe if event is Event.PROBE else go_on)(self, activity)
+            return
         if activity is not None and event in {Event.STILL, Event.PAUSED} and self.state is not State.HOLDING:
             self.pending.append(activity.finish(whole=self.state is not State.STOPPING))
         if event is Event.PAUSED and isinstance(activity, Job):
@@ -271,7 +278,7 @@ class Controller:
         match job.waiting:
             case ToolChange(tool=tool):
                 self.ask("tool", f"put tool {tool} in, then resume")
-            case Pause():
+            case Pause() if job.waiting is not BLOCK_END:
                 self.ask("pause", "the program has stopped; resume goes on")
             case _:
                 self.ask("pause", "the block is done; resume or step goes on")

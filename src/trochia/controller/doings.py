@@ -43,8 +43,6 @@ CANNOT: dict[type[Action], str] = {
     SpindleLock: "motion locked to the spindle",
     UserCode: "a code of the user's own (M100 to M199)",
     Unfinished: "a cycle that is not complete",
-    Probe: "a probing move",
-    WaitInput: "M66, which reads an input,",
 }
 
 
@@ -55,6 +53,8 @@ class Doings:
     ----------
     dark
         Whether beam and spindle stay off.
+    after
+        Of the part of the program that was run before this.
 
     Attributes
     ----------
@@ -64,23 +64,26 @@ class Doings:
         Signed spindle speed the program asked for last, before the override [rpm].
     messages
         What the program says to its operator, until taken.
+    dynamic
+        Whether M4 was the last to turn spindle or beam on, at the program's end.
 
     Raises
     ------
     LocalProtocolError
-        When the program has an action of :data:`CANNOT`, or sets an output that the machine does not have.
+        As :func:`check`.
     """
 
-    def __init__(self, program: Program, machine: Machine, *, dark: bool, spindle: float = 1.0) -> None:
-        self.spindle, self.speed = spindle, 0.0
+    def __init__(
+        self, program: Program, machine: Machine, *, dark: bool, spindle: float = 1.0, after: Doings | None = None
+    ) -> None:
+        self.spindle, self.speed = spindle, 0.0 if after is None else after.speed
         self.messages: list[str] = []
         self._machine, self._dark = machine, dark
-        self._dynamic = dynamic_moves(program)
-        for action in program.actions:
-            if type(action) in CANNOT:
-                raise LocalProtocolError(f"line {action.line}: {CANNOT[type(action)]} cannot be run live yet")
-            if isinstance(action, Output | SynchronisedOutput):
-                self._name(action)
+        before = after is not None and after.dynamic
+        self._dynamic = dynamic_moves(program, begin=before)
+        turns = [action.direction for action in program.actions if isinstance(action, Spindle)]
+        self.dynamic = turns[-1] < 0 if turns else before
+        check(program, machine)
 
     def sets(self, action: Action) -> Iterator[tuple[str, float]]:
         """Yield the outputs an action sets, by name."""
@@ -94,7 +97,7 @@ class Doings:
                 self.speed = 0.0
                 yield from (("spindle", 0.0), ("mist", 0.0), ("flood", 0.0))
             case Output() | SynchronisedOutput():
-                yield self._name(action), float(action.value)
+                yield _output(self._machine, action), float(action.value)
             case Message(text=text):
                 self.messages.append(text)
             case _:
@@ -123,20 +126,66 @@ class Doings:
             factor = np.minimum(states["v"] / part.segments["speed_limit"][rows], most)
         return np.where(self._dynamic[moves], factor, 1.0).astype(np.float32)
 
-    def _name(self, action: Output | SynchronisedOutput) -> str:
-        analogue = not isinstance(action.value, bool)
-        name = output_name(self._machine, action.index, analogue=analogue)
-        if name is None:
-            raise LocalProtocolError(
-                f"line {action.line}: the machine has no {'analogue' if analogue else 'digital'} output "
-                f"number {action.index}", hint="Outputs are counted from 0 in the order of [io] in the machine file.",
-            )  # fmt: skip
-        return name
+
+def check(program: Program, machine: Machine) -> None:
+    """Refuse what cannot be run on this machine.
+
+    Raises
+    ------
+    LocalProtocolError
+        When the program has an action of :data:`CANNOT`, or uses an output, an input or a probe that is not there.
+    """
+    for action in program.actions:
+        if type(action) in CANNOT:
+            raise LocalProtocolError(f"line {action.line}: {CANNOT[type(action)]} cannot be run live yet")
+        match action:
+            case Output() | SynchronisedOutput():
+                _output(machine, action)
+            case WaitInput():
+                input_of(machine, action)
+            case Probe() if machine.probe is None:
+                raise LocalProtocolError(f"line {action.line}: the machine has no probe",
+                                         hint="Name its input in the machine file, under [probe].")  # fmt: skip
+            case _:
+                pass
 
 
-def dynamic_moves(program: Program) -> NDArray[np.bool_]:
-    """Return for each move (moves,) whether M4 was the last to turn spindle or beam on before it."""
-    found = np.zeros(len(program.moves), np.bool_)
+def input_of(machine: Machine, action: WaitInput) -> str:
+    """Return the name of the input that M66 calls by number: the machine file's inputs of that kind, in its order.
+
+    Raises
+    ------
+    LocalProtocolError
+        When there is none.
+    """
+    kind = "analog-input" if action.analogue else "input"
+    names = [channel.name for channel in machine.io if channel.kind == kind]
+    if action.index < len(names):
+        return names[action.index]
+    raise _missing(action, "input", analogue=action.analogue)
+
+
+def _output(machine: Machine, action: Output | SynchronisedOutput) -> str:
+    analogue = not isinstance(action.value, bool)
+    name = output_name(machine, action.index, analogue=analogue)
+    if name is None:
+        raise _missing(action, "output", analogue=analogue)
+    return name
+
+
+def _missing(action: Output | SynchronisedOutput | WaitInput, what: str, *, analogue: bool) -> LocalProtocolError:
+    return LocalProtocolError(
+        f"line {action.line}: the machine has no {'analogue' if analogue else 'digital'} {what} number {action.index}",
+        hint=f"{what.title()}s are counted from 0 in the order of [io] in the machine file.",
+    )
+
+
+def dynamic_moves(program: Program, *, begin: bool = False) -> NDArray[np.bool_]:
+    """Return for each move (moves,) whether M4 was the last to turn spindle or beam on before it.
+
+    ``begin`` says whether it was before the first.
+    """
+    found = np.full(len(program.moves), begin)
     for action in program.actions:
         if isinstance(action, Spindle):
             found[action.at :] = action.direction < 0

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from trochia.backends.live import Orders, Trouble
+from trochia.backends.switches import switches_of
 from trochia.controller.doings import OUTPUTS_OFF
 from trochia.controller.guards import stands_on
 from trochia.controller.homing import Home as Homing
@@ -241,6 +242,22 @@ def set_output(it: Controller, command: c.SetOutput, _now: float) -> str:
     return ""
 
 
+def set_input(it: Controller, command: c.SetInput, _now: float) -> str:
+    """Set an input of a twin."""
+    if it.report.actual is None:
+        raise LocalProtocolError("inputs of a real machine cannot be set", hint="Only a digital twin's can.")
+    switches = switches_of(it.machine)
+    known = [
+        channel.name for channel in it.machine.io if channel.kind.endswith("input") and channel.name not in switches
+    ]
+    if command.name in switches:
+        raise LocalProtocolError(f"{command.name} is told by where the machine is", hint="Move the axis.")
+    if command.name not in known:
+        raise LocalProtocolError(f"there is no input {command.name!r}", hint="There are: " + ", ".join(known))
+    it.pending.append(Orders(inputs={command.name: command.value}))
+    return ""
+
+
 def arm_beam(it: Controller, command: c.ArmBeam, _now: float) -> str:
     """Allow or forbid the beam."""
     it.armed = command.on
@@ -287,5 +304,6 @@ HANDLERS: dict[type[c.Command], Handler] = {
     c.Load: load, c.Unload: unload, c.Run: run, c.RunFrom: run_from, c.Hold: hold, c.Resume: resume, c.Step: step,
     c.Abort: abort, c.Switches: switches, c.Override: override, c.Mdi: mdi, c.Jog: jog, c.JogStop: jog_stop,
     c.JogBy: jog_by, c.JogTo: jog_to, c.Home: home, c.WorkZero: work_zero, c.SetOutput: set_output,
+    c.SetInput: set_input,
     c.ArmBeam: arm_beam, c.Answer: answer,
 }  # fmt: skip

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from trochia.controller.answer_entries import answer_of
 from trochia.controller.journal import entries
 from trochia.errors import RecordingError
 
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from trochia.languages.gcode.answers import Answer
     from trochia.program import WorkState
 
 PROGRAMS = "programs"  #: folder of program texts, inside the journal's
@@ -47,6 +49,8 @@ class Interrupted:
         Time of the motion then [s].
     work
         What it found set up, as :func:`work_entry` gives it.
+    answers
+        What the machine had answered to its questions.
     closed
         Whether the controller was closed down in good order afterwards.
     """
@@ -61,6 +65,7 @@ class Interrupted:
     move: int = 0
     position: dict[str, float]
     done_s: float = 0.0
+    answers: tuple[Answer, ...] = ()
     closed: bool = False
 
     def place(self, axes: str) -> NDArray[np.float64]:
@@ -118,10 +123,14 @@ def interrupted(folder: Path) -> Interrupted | None:
     job: dict[str, Any] | None = None
     point: Mapping[str, Any] = {}
     closed = False
+    answers: list[Answer] = []
     for entry in entries(folder):
         match entry["kind"]:
             case "job":
                 job, point, closed = entry, {}, False
+                answers = []
+            case "answer":
+                answers.append(answer_of(entry))
             case "point" if "move" in entry:
                 point = entry
             case "end" if job is not None and entry.get("name") == job["name"]:
@@ -136,7 +145,7 @@ def interrupted(folder: Path) -> Interrupted | None:
         name=job["name"], text=_text(folder, job["program"]), start=job["start"], work=job["work"],
         block_delete=job.get("block_delete", False), line=point.get("line", 0), distance=point.get("distance", 0.0),
         move=point.get("move", 0), position=point.get("position", job["start"]), done_s=point.get("done_s", 0.0),
-        closed=closed,
+        answers=tuple(answers), closed=closed,
     )  # fmt: skip
 
 

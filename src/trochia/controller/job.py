@@ -12,12 +12,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from trochia.backends.live import Orders
+from trochia.backends.live import Orders, Watch
+from trochia.controller.awaited import Awaited
 from trochia.controller.doings import Doings
 from trochia.controller.feeder import ROW, Feeder
 from trochia.controller.states import Event
 from trochia.planner.live import LivePlan
-from trochia.program import Action, Pause, ToolChange
+from trochia.program import Action, Pause, Probe, ToolChange, WaitInput
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -53,6 +54,8 @@ class Job:
         Stream time at which it begins [s].
     ahead
         Motion the backend wants to hold [s].
+    after
+        The part of the program that was run before this.
 
     Attributes
     ----------
@@ -62,15 +65,25 @@ class Job:
         Whether it rests after each block.
     entry
         Where in the program it begins, if not at its start.
+    asks
+        What it asks at its end, and is to go on from with the answer.
+    probing
+        Whether it is on its probing move.
     """
 
-    def __init__(self, plan: Plan, machine: Machine, options: Options, *, origin: float, ahead: float) -> None:
+    def __init__(
+        self, plan: Plan, machine: Machine, options: Options, *, origin: float, ahead: float,
+        asks: Action | None = None, after: Job | None = None,
+    ) -> None:  # fmt: skip
         self.plan = plan
         self.options = options
         self.waiting: Action | None = None
-        self.by_block = options.block_by_block
+        self.by_block = options.block_by_block if after is None else after.by_block
         self.entry: Entry | None = None
-        self.doings = Doings(plan.program, machine, dark=options.dark, spindle=options.spindle)
+        self.asks, self.probing = asks, False
+        self._waits_for = Awaited(asks, machine) if isinstance(asks, WaitInput) else None
+        self.doings = Doings(plan.program, machine, dark=options.dark, spindle=options.spindle,
+                             after=None if after is None else after.doings)  # fmt: skip
         self._machine = machine
         live = LivePlan.of(plan.trajectory, machine)
         if (options.feed, options.rapid) != (1.0, 1.0):
@@ -82,34 +95,67 @@ class Job:
         self._sent: list[tuple[float, int]] = []  # (plan time, number) of actions that were
         self._paused_at: float | None = None
         self._block: int | None = None  # source line that may be run, block by block
+        self._given_up = False  # the probing move
 
     # -- what the controller asks for
 
     def feed(self, report: Report) -> Iterator[Orders]:
         """Yield the next orders; none where enough is held."""
+        if self.probing and report.caught is not None:
+            return
         for segments, at, portions in self.feeder.more(report.executed, self._until):
             timed = self._timed(portions)
             yield Orders(segments=segments, at=at, timed=tuple(timed))
 
     def event(self, report: Report) -> Event | None:
-        """Return what has come about: the program waits, or is at its end."""
+        """Return what has come about: the program waits or asks, was answered, or is at its end."""
+        if self.probing:
+            return self._probed(report)
         if not self.feeder.done(report.executed):
             return None
         if self.waiting is None and not self.feeder.live.held:
             waits = (action for action in self._actions[self._next :] if self._waits(action))
             self.waiting = next(waits, None)  # one that stands behind the last move
+        if isinstance(self.waiting, Probe):
+            return Event.PROBE
+        if self.waiting is None and self._waits_for is not None and not self.feeder.live.held:
+            return Event.ANSWER if self._waits_for.look(report) is not None else None
         return Event.PAUSED if self.waiting is not None else Event.STILL
+
+    def rest_first(self) -> None:
+        """Wait before the first move, block by block: what came before it was a block."""
+        if self.by_block and len(self.plan.program.moves):
+            self._pause(0.0, BLOCK_END)
+
+    def probe(self, name: str) -> Orders:
+        """Go on with the probing move that it waits at; return the order to watch the probe."""
+        assert isinstance(self.waiting, Probe), "it waits at a probing move"
+        watch = Watch(name=name, level=self.waiting.toward)
+        self.probing = True
+        self._pass()
+        return Orders(watch=(watch,))
+
+    @property
+    def read(self) -> float:
+        """What M66 has read; -1: its time was over."""
+        assert self._waits_for is not None, "it asks for an input"
+        assert self._waits_for.value is not None, "it has answered"
+        return self._waits_for.value
 
     def finish(self, *, whole: bool) -> Orders:
         """Return what the actions up to the next that waits, or the program's end, set at once; nothing if given up."""
         outputs: dict[str, float] = {}
+        whole = whole and self.waiting is not BLOCK_END  # there what follows goes with the next block
         while whole and self._next < len(self._actions) and self._actions[self._next] is not self.waiting:
             outputs.update(self.doings.sets(self._actions[self._next]))
             self._next += 1
         return Orders(outputs=outputs)
 
     def hold(self, report: Report, latency: float) -> None:
-        """Brake along the path as soon as an order can act."""
+        """Brake along the path as soon as an order can act; a probing move is given up."""
+        self._given_up = self.probing
+        if self.probing and report.caught is not None:
+            return  # the backend brakes already
         at = self.feeder.brake(report.executed, latency)
         self.feeder.dark_until = np.inf
         self._take_back(at)
@@ -120,9 +166,7 @@ class Job:
         Returns the plan time when that is made up.
         """
         if self.waiting is not None:
-            self._next += self.waiting is not BLOCK_END  # everything before it has been set at its rest
-            self.waiting = None
-            self.feeder.until = np.inf
+            self._pass()
             self._scale(self.feeder.sent, feed, rapid)
             return 0.0
         now = max(self.feeder.plan_time(report.executed), self.feeder.end)
@@ -154,6 +198,18 @@ class Job:
 
     # -- inside
 
+    def _pass(self) -> None:
+        """Go beyond the action it waits at: everything before it has been set at its rest."""
+        self._next += self.waiting is not BLOCK_END
+        self.waiting = None
+        self.feeder.until = np.inf
+
+    def _probed(self, report: Report) -> Event | None:
+        """Return CONTACT at rest after the probing move, STILL where it was given up."""
+        if not (report.still and (report.caught is not None or self.feeder.done(report.executed))):
+            return None
+        return Event.STILL if self._given_up else Event.CONTACT
+
     def _scale(self, at: float, feed: float, rapid: float) -> bool:
         """Change the overrides from a plan time on; False where they are the same."""
         speeds = self.feeder.live.speeds
@@ -175,12 +231,14 @@ class Job:
         number = next((k for k in range(self._next, len(self._actions)) if self._waits(self._actions[k])), None)
         waits = len(self.plan.program.moves) + 1 if number is None else self._actions[number].at
         for t, reached in self._reached(portions):
-            if reached >= waits and number is not None:
-                return self._pause(t, self._actions[number])
+            action = self._actions[number] if reached >= waits and number is not None else None
             line = self._line(reached)
-            if self.by_block and line not in {self._block, None}:
-                if self._block is not None:
-                    return self._pause(t, BLOCK_END)
+            fresh = self.by_block and line not in {self._block, None}
+            if fresh and self._block is not None and (action is None or isinstance(action, Probe)):
+                return self._pause(t, BLOCK_END)
+            if action is not None:
+                return self._pause(t, action)
+            if fresh:
                 self._block = line
         return None
 
@@ -197,7 +255,7 @@ class Job:
     def _waits(self, action: Action) -> bool:
         if isinstance(action, Pause):
             return not action.optional or self.options.optional_stop
-        return isinstance(action, ToolChange)
+        return isinstance(action, ToolChange | Probe)
 
     def _reached(self, portions: list[Portion]) -> Iterator[tuple[float, int]]:
         """Yield (plan time, move) at the start of each phase: actions that stand at or before the move are due then."""
@@ -215,7 +273,7 @@ class Job:
         for t, reached in self._reached(portions):
             while self._next < len(self._actions) and self._actions[self._next].at <= reached:
                 action = self._actions[self._next]
-                if self._waits(action) and action is self.waiting:
+                if self._waits(action):
                     break
                 yield from ((self.feeder.origin + t, name, value) for name, value in self.doings.sets(action))
                 self._sent.append((t, self._next))

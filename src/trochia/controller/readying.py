@@ -9,16 +9,22 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from trochia.analysis.plan import Plan, make
 from trochia.analysis.travel import travel_error
 from trochia.languages import gcode
-from trochia.program import AXES, PathMode, Program, WorkState
+from trochia.languages.gcode.answers import KEPT, Answer, Answers
+from trochia.program import AXES, Action, PathMode, Probe, Program, WaitInput, WorkState
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from trochia.machine.machine import Machine
 
 MDI = "<mdi>"  #: name of lines that are no program
 EXACT = PathMode.EXACT_STOP
+ASKING = Probe | WaitInput  #: actions whose outcome decides how a program goes on
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -26,6 +32,15 @@ class Ready:
     """A plan, what it was made from, and what it leaves behind.
 
     ``start`` is where the machine stood (9,), ``found`` what was set up, ``work`` what the text leaves set up.
+
+    Attributes
+    ----------
+    answers
+        What the machine had answered to the program's questions; None: it was read as if nobody answered.
+    asks
+        The question at which the program was read no further; None: it comes to its end.
+    moves, actions
+        How many the whole text has so far; the plan may be of the last of them only.
     """
 
     plan: Plan
@@ -35,6 +50,16 @@ class Ready:
     work: WorkState
     found: WorkState
     start: tuple[float, ...]
+    block_delete: bool = False
+    answers: tuple[Answer, ...] | None = None
+    asks: Action | None = None
+    moves: int = 0
+    actions: int = 0
+
+    @property
+    def asking(self) -> bool:
+        """Whether what follows depends on the machine's answers, and they were not asked for."""
+        return self.answers is None and any(isinstance(act, ASKING) for act in self.plan.program.actions)
 
 
 class Readier:
@@ -46,7 +71,7 @@ class Readier:
 
     def ready(
         self, text: str, name: str, *, work: WorkState, at: dict[str, float], block_delete: bool = False,
-        exact: bool = False, bounded: bool = True,
+        exact: bool = False, bounded: bool = True, answers: tuple[Answer, ...] | None = None,
     ) -> Ready:  # fmt: skip
         """Return the plan of a text that begins at machine positions ``at`` [mm, degree].
 
@@ -55,7 +80,9 @@ class Readier:
         exact
             Whether motion rests at the end of every move, as it does block by block.
         bounded
-            Whether the travel binds: it does not where nobody knows the position.
+            Whether the travel binds: it does not where nobody knows the position, nor where the machine is to answer.
+        answers
+            Of the machine, to the first questions; the text is read to the next.  None: as if nobody answered.
 
         Raises
         ------
@@ -63,19 +90,51 @@ class Readier:
             At the first thing that is wrong.
         """
         start = tuple(at.get(letter, 0.0) for letter in AXES)
-        key = (text, name, id(work), tuple(round(value, 6) for value in start), block_delete, exact)
+        key = (text, name, id(work), tuple(round(value, 6) for value in start), block_delete, exact, answers)
         if self._last is not None and self._last.key == key:
             return self._last
-        left: list[WorkState] = []
-        reading = gcode.Reading(work=work, on_end=left.append)
-        program = gcode.read(text, name=name, work=work, start=start, block_delete=block_delete, reading=reading)
+        program, left, asks = self._read(text, name, work, start, block_delete=block_delete, answers=answers)
         plan = make(_stopping(program) if exact else program, self._machine)
-        error = travel_error(plan) if bounded else None
+        made = Ready(plan=plan, text=text, name=name, key=key, work=left, found=work, start=start, answers=answers,
+                     block_delete=block_delete, asks=asks, moves=len(program.moves),
+                     actions=len(program.actions))  # fmt: skip
+        error = travel_error(plan) if bounded and not made.asking else None
         if error is not None:
             raise error
-        self._last = Ready(plan=plan, text=text, name=name, key=key, work=left[-1] if left else work,
-                           found=work, start=start)  # fmt: skip
-        return self._last
+        self._last = made
+        return made
+
+    def onward(self, made: Ready, answer: Answer, *, at: dict[str, float], exact: bool) -> Ready:
+        """Return the plan of what a program does after a question, up to its next one or its end, from ``at``.
+
+        Raises
+        ------
+        ProgramError, PlanningError
+            As :meth:`ready`.
+        """
+        answers = (*(made.answers or ()), answer)
+        whole, left, asks = self._read(made.text, made.name, made.found, made.start, block_delete=made.block_delete,
+                                       answers=answers)  # fmt: skip
+        rest = rest_of(whole, made.moves, made.actions, np.array([at.get(letter, 0.0) for letter in AXES]))
+        plan = make(_stopping(rest) if exact else rest, self._machine)
+        error = travel_error(plan)
+        if error is not None:
+            raise error
+        return replace(made, plan=plan, work=left, answers=answers, asks=asks, moves=len(whole.moves),
+                       actions=len(whole.actions))  # fmt: skip
+
+    def _read(
+        self, text: str, name: str, work: WorkState, start: tuple[float, ...], *, block_delete: bool,
+        answers: tuple[Answer, ...] | None,
+    ) -> tuple[Program, WorkState, Action | None]:  # fmt: skip
+        """Return a text as a program, what it leaves set up, and the question it was read to."""
+        given = None if answers is None else Answers(answers)
+        found = replace(work, variables={**dict.fromkeys(KEPT, 0.0), **work.variables}) if answers else work
+        left: list[WorkState] = []
+        reading = gcode.Reading(work=found, on_end=left.append, answers=given)
+        program = gcode.read(text, name=name, work=found, start=start, block_delete=block_delete, reading=reading)
+        asks = program.actions[-1] if given is not None and given.wanting else None
+        return program, left[-1] if left else work, asks
 
     def inside(self, made: Ready, program: Program, *, exact: bool) -> Ready:
         """Return the plan of a program that begins inside that of another (:mod:`trochia.controller.rerun`).
@@ -90,6 +149,12 @@ class Readier:
         if error is not None:
             raise error
         return replace(made, plan=plan)
+
+
+def rest_of(program: Program, moves: int, actions: int, start: NDArray[np.float64]) -> Program:
+    """Return what follows the first moves and actions of a program, from where the machine stands (9,)."""
+    later = tuple(replace(act, at=act.at - moves) for act in program.actions[actions:])
+    return replace(program, start=start, moves=program.moves[moves:], actions=later)
 
 
 def _stopping(program: Program) -> Program:

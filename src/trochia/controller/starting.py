@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trochia.backends.live import Orders
+from trochia.controller.doings import check
 from trochia.controller.interrupted import work_entry
 from trochia.controller.job import Job, Options
 from trochia.controller.readying import MDI
@@ -50,8 +51,9 @@ def run_from(it: Controller, command: c.RunFrom, _now: float) -> str:
         made, move, place = _interrupted(it)
     else:
         name, text = _loaded(it)
-        made = it.readier.ready(text, name, work=it.work, at=it.position(), block_delete=it.switches.block_delete)
-        move, place = move_of_line(made.plan.program, command.line), None
+        made = _asked(it, it.readier.ready(text, name, work=it.work, at=it.position(),
+                                           block_delete=it.switches.block_delete))  # fmt: skip
+        move, place = _line(made, command.line), None
     here = it.position()
     inside = entry(made.plan.program, move, it.machine, at=np.array([here.get(a, 0.0) for a in AXES]),
                    tool=it.work.tool, place=place)  # fmt: skip
@@ -68,6 +70,7 @@ def begin(it: Controller, text: str, name: str, *, block_by_block: bool) -> str:
         text, name, work=it.work, at=it.position(), block_delete=it.switches.block_delete, exact=block_by_block,
         bounded=known(it),
     )  # fmt: skip
+    made = _asked(it, made, exact=block_by_block)
     for axis in it.machine.axes:
         low, high = made.plan.extents.get(axis.name, (0.0, 0.0))
         if not it.trusted[axis.name] and high - low > STAYS:
@@ -84,7 +87,7 @@ def _go(it: Controller, made: Ready, *, block_by_block: bool, inside: Entry | No
         optional_stop=it.switches.optional_stop, block_by_block=block_by_block,
         dark=it.switches.dry_run, feed=it.overrides.feed, rapid=it.overrides.rapid, spindle=it.overrides.spindle,
     )  # fmt: skip
-    job = Job(made.plan, it.machine, options, origin=it.report.executed, ahead=it.ahead)
+    job = Job(made.plan, it.machine, options, origin=it.report.executed, ahead=it.ahead, asks=made.asks)
     job.entry = inside
     it.begin(job)
     it.running = made
@@ -95,6 +98,24 @@ def _go(it: Controller, made: Ready, *, block_by_block: bool, inside: Entry | No
         it.note("job", name=made.name, program=made.text, start=start, work=work_entry(made.found),
                 block_delete=it.switches.block_delete, seconds=made.plan.time_s)  # fmt: skip
     return f"{made.plan.time_s:.1f} s"
+
+
+def _asked(it: Controller, made: Ready, *, exact: bool = False) -> Ready:
+    """Return the plan up to the program's first question to the machine, if it has any."""
+    if not made.asking:
+        return made
+    check_known(it)
+    check(made.plan.program, it.machine)
+    return it.readier.ready(made.text, made.name, work=it.work, at=it.position(), block_delete=made.block_delete,
+                            exact=exact, answers=())  # fmt: skip
+
+
+def _line(made: Ready, line: int) -> int:
+    """Return the number of the first move of a line."""
+    if made.asks is not None and line > made.asks.line:
+        raise LocalProtocolError(f"line {line} stands behind line {made.asks.line}, whose outcome nobody knows yet",
+                                 hint="Run from that line, or one before it.")  # fmt: skip
+    return move_of_line(made.plan.program, line)
 
 
 def check_overrides(it: Controller) -> None:
@@ -123,6 +144,10 @@ def _interrupted(it: Controller) -> tuple[Ready, int, NDArray[np.float64]]:
         raise LocalProtocolError("no job was interrupted", hint="Name the line to run from.")
     if not job.text:
         raise LocalProtocolError(f"the text of {job.name} was not kept", hint="Load it, and name the line to run from.")
-    made = it.readier.ready(job.text, job.name, work=job.set_up(it.work), at=job.start, block_delete=job.block_delete)
+    work = job.set_up(it.work)
+    made = it.readier.ready(job.text, job.name, work=work, at=job.start, block_delete=job.block_delete)
+    if made.asking:
+        made = it.readier.ready(job.text, job.name, work=work, at=job.start, block_delete=job.block_delete,
+                                answers=job.answers)  # fmt: skip
     it.loaded, it.preview = (job.name, job.text), made
     return made, min(job.move, max(len(made.plan.program.moves) - 1, 0)), job.place(AXES)

@@ -36,6 +36,7 @@ class Event(Enum):
     PAUSED = "Paused"  # the program waits: M0, M1, a tool change, the end of a block
     PROBE = "Probe"  # the program's next move is a probing move
     CONTACT = "Contact"  # the probe has answered, and motion is at rest
+    ANSWER = "Answer"  # the input that M66 reads, or waits for, has answered
     BACK = "Back"  # at speed again where a hold began
     FAULT = "Fault"
     CLEARED = "Cleared"  # all alarms acknowledged, none still there, drives on
@@ -49,7 +50,7 @@ MOVING = frozenset({
 })  # fmt: skip
 
 #: commands that are taken in every state and change none
-ALWAYS = ("acknowledge", "answer", "override", "record", "record-stop", "switches")
+ALWAYS = ("acknowledge", "answer", "override", "record", "record-stop", "set-input", "switches")
 #: commands that are taken where no motion and no job is under way, and change no state
 QUIET = ("arm-beam", "load", "set-output", "unload", "work-zero")
 
@@ -61,10 +62,12 @@ _JOBS = {
     (State.RUNNING, "hold"): State.HOLDING,
     (State.RUNNING, Event.PAUSED): State.HELD,
     (State.RUNNING, Event.PROBE): State.PROBING,
+    (State.RUNNING, Event.ANSWER): State.RUNNING,
     (State.RUNNING, Event.STILL): State.IDLE,
     (State.STEPPING, "hold"): State.HOLDING,
     (State.STEPPING, Event.PAUSED): State.HELD,
     (State.STEPPING, Event.PROBE): State.PROBING,
+    (State.STEPPING, Event.ANSWER): State.STEPPING,
     (State.STEPPING, Event.STILL): State.IDLE,
     (State.PROBING, "hold"): State.STOPPING,
     (State.PROBING, Event.CONTACT): State.RUNNING,
@@ -74,6 +77,8 @@ _JOBS = {
     (State.HELD, "abort"): State.IDLE,
     (State.RESUMING, "hold"): State.HOLDING,
     (State.RESUMING, Event.BACK): State.RUNNING,
+    (State.RESUMING, Event.PROBE): State.PROBING,
+    (State.RESUMING, Event.ANSWER): State.RUNNING,
     (State.RESUMING, Event.PAUSED): State.HELD,
     (State.RESUMING, Event.STILL): State.IDLE,
 }

@@ -39,6 +39,7 @@ def check(machine: Machine) -> None:
                 raise ConfigError("missing: the profile s-curve needs it", key=f"axes.{axis.name}.jerk")
     _check_pins(machine)
     _check_switches(machine)
+    _check_probe(machine)
 
 
 def _check_names(machine: Machine) -> None:
@@ -154,6 +155,14 @@ def _check_switches(machine: Machine) -> None:
             if name not in inputs:
                 raise ConfigError(f"there is no input {name!r} under [io]", key=f"axes.{axis.name}.{key}",
                                   hint=did_you_mean(name, inputs))  # fmt: skip
+
+
+def _check_probe(machine: Machine) -> None:
+    """Refuse a probe that is no input of the machine."""
+    inputs = [channel.name for channel in machine.io if channel.kind == "input"]
+    if machine.probe is not None and machine.probe.input not in inputs:
+        raise ConfigError(f"there is no input {machine.probe.input!r} under [io]", key="probe.input",
+                          hint=did_you_mean(machine.probe.input, inputs))  # fmt: skip
 
 
 def _has_index(machine: Machine, axis: str) -> bool:

@@ -9,6 +9,7 @@ from trochia.machine.axes import LETTERS, PathLimits
 from trochia.machine.checks import check
 from trochia.machine.codecs import Flag, Quantity, Text
 from trochia.machine.io import Beam, Spindle
+from trochia.machine.probe import Probe
 from trochia.machine.schema import Bound, Record, check_bounds, key
 
 if TYPE_CHECKING:
@@ -89,6 +90,7 @@ class Machine:
     )
     spindle: Spindle | None = field(default=None, metadata=key(Record(Spindle), "the spindle"))
     beam: Beam | None = field(default=None, metadata=key(Record(Beam), "a laser or the like"))
+    probe: Probe | None = field(default=None, metadata=key(Record(Probe), "a touch probe"))
     io: tuple[Channel, ...] = field(default=())
 
     def __post_init__(self) -> None:

@@ -160,6 +160,13 @@ class SetOutput(Command, frozen=True, kw_only=True, tag="set-output"):
     value: float
 
 
+class SetInput(Command, frozen=True, kw_only=True, tag="set-input"):
+    """Set an input of a digital twin by its name (1: active); inputs of a real machine are what they are."""
+
+    name: str
+    value: float
+
+
 class ArmBeam(Command, frozen=True, kw_only=True, tag="arm-beam"):
     """Allow the beam to be lit by programs, or forbid it."""
 
@@ -196,7 +203,7 @@ class Answer(Command, frozen=True, kw_only=True, tag="answer"):
 AnyCommand = (
     Enable | Disable | EmergencyStop | Reset | Acknowledge | Load | Unload | Run | RunFrom | Hold | Resume | Step
     | Abort | Switches | Override | Mdi | Jog | JogStop | JogBy | JogTo | Home | WorkZero | SetOutput | ArmBeam | Record
-    | RecordStop | Answer
+    | RecordStop | SetInput | Answer
 )  # fmt: skip
 
 

@@ -331,7 +331,7 @@ def test_a_stop_before_the_first_tick_moves_nothing(bench, mill: Machine, comman
         assert max(position[0] for _, position, _, _ in b.trace) == pytest.approx(20.0, abs=0.01)
 
 
-@pytest.mark.parametrize("line", ["G38.2 Z-5 F100", "M66 P0 L3 Q1", "S100 M3\nG33 Z-5 K1"])
+@pytest.mark.parametrize("line", ["G38.2 Z-5 F100", "M66 P7 L3 Q1", "S100 M3\nG33 Z-5 K1"])
 def test_what_cannot_be_run_live_is_refused_before_anything_moves(bench, mill: Machine, line: str) -> None:
     b = bench(mill).on()
     text = f"G21 G90\nG0 X5\n{line}\nM2\n"

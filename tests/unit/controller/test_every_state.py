@@ -19,6 +19,7 @@ from trochia.controller.states import MOVING, TABLE, State, legal
 from trochia.errors import LinkError
 from trochia.machine.homing import Homing
 from trochia.machine.io import Beam, Channel
+from trochia.machine.probe import Part, Probe
 from trochia.messages import command as c
 
 if TYPE_CHECKING:
@@ -34,6 +35,8 @@ TEXTS = (
     "G21 T2 M6\nG1 X2 F600\nM2\n",
     "M2\n",
     "M0\nM0\nM2\n",
+    "G21 G90 M3 S60 G38.3 X40 F900\nG1 Y[#5070 * 3] F600\nM66 P1 L1 Q0.3\nG1 X[#5061 - 1 + #5399]\nM2\n",
+    "G21 G91 G38.2 X9 F2000\nG38.5 X-9 F300\nM66 P0 L0\nG1 Y1 F900\nM2\n",
     "",
     "G1 X1\n",  # no feed: refused
     "G21 G0 X9999\nM2\n",  # out of travel: refused
@@ -86,6 +89,7 @@ COMMANDS = st.one_of(
     ),
     st.builds(c.WorkZero, axes=st.dictionaries(AXES, st.just(1.0), max_size=1)),
     st.builds(c.SetOutput, name=st.sampled_from(["lamp", "horn"]), value=st.just(1.0)),
+    st.builds(c.SetInput, name=st.sampled_from(["limit-x-minus", "limit-x-plus"]), value=st.sampled_from([0.0, 1.0])),
     st.builds(c.Answer, request=st.integers(0, 3), yes=st.booleans()),
 )
 
@@ -113,7 +117,8 @@ def machine_of() -> Machine:
         axes=axes,
         joints=joints,
         beam=Beam(kind="power", full_power=100.0),
-        io=(*made.io, Channel(name="lamp", kind="latched")),
+        io=(*made.io, Channel(name="lamp", kind="latched"), Channel(name="probe", kind="input")),
+        probe=Probe(input="probe", part=Part(left=9.0, right=30.0)),
     )
 
 

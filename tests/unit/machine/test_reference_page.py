@@ -19,6 +19,7 @@ from trochia.machine.kinematics import KINEMATICS
 from trochia.machine.loads import JointLoad
 from trochia.machine.machine import Machine
 from trochia.machine.motors import CatalogueStepper
+from trochia.machine.probe import Part, Probe
 from trochia.machine.resonance import Resonance
 from trochia.machine.schema import Bound, Key, Record, Variant, keys_of
 from trochia.machine.servos import LOOPS, SERVO_MOTORS, DriveTrain, NotchData, ServoAmplifier
@@ -28,7 +29,7 @@ PAGE = Path(__file__).parents[3] / "docs" / "reference" / "machine-file.md"
 TABLES = {
     "Top of the file": Machine, "path": PathLimits, "axes.X": Axis, "resonance": Resonance,
     "home": Homing, "limit_minus and limit_plus": LimitSwitch, "joints.X": Joint, "encoder": Encoder,
-    "pulses": PulseTiming, "spindle": Spindle, "beam": Beam, "io.NAME": Channel,
+    "pulses": PulseTiming, "spindle": Spindle, "beam": Beam, "io.NAME": Channel, "probe": Probe, "part": Part,
     "catalogue": CatalogueStepper, "load": JointLoad,
 } | {f"motor, kind {kind}": cls for kind, cls in MOTORS.items()} | {
     f"transmission, kind {kind}": cls for kind, cls in TRANSMISSIONS.items()

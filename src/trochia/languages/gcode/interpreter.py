@@ -103,6 +103,7 @@ def blocks(
         text = _adapted(text, reading.dialect, reading, name)
     work = work or reading.work
     state = begin(work, start)
+    state.answers = reading.answers
     for number, value in work.variables.items():
         state.parameters.numbered[number] = value
     define(state.parameters, state)

@@ -11,6 +11,7 @@ from trochia.program.work import WorkState
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from trochia.languages.gcode.answers import Answers
     from trochia.languages.gcode.dialects import Dialect
 
 OnEnd = Callable[[WorkState], None]
@@ -42,6 +43,9 @@ class Reading:
         Is given what a dialect's program means otherwise: line and message.
     on_end
         Is given what the program leaves set up, when it has come to its end.
+    answers
+        What a machine has answered to probing moves and M66 so far; the reading ends at the first question without
+        one.  None: nobody answers, and reading goes on as if the machine were not there.
     """
 
     subroutines: tuple[Path, ...] = ()
@@ -52,6 +56,7 @@ class Reading:
     dialect: Dialect | None = None
     on_remark: OnRemark | None = None
     on_end: OnEnd | None = None
+    answers: Answers | None = None
 
     def __post_init__(self) -> None:
         if self.most_lines < 1:

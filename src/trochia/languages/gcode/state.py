@@ -16,6 +16,7 @@ from trochia.program.parameter_file import ACTIVE
 from trochia.program.tools import NO_TOOL, Tool
 
 if TYPE_CHECKING:
+    from trochia.languages.gcode.answers import Answers
     from trochia.languages.gcode.compensator import Compensator
     from trochia.languages.gcode.cycles.profile import Profile
     from trochia.languages.gcode.groups.saved_modes import Modes
@@ -92,6 +93,8 @@ class State:
         G99: canned cycles go back to R, not to where the first of them began.
     cycle_words
         Words that stay in force from one hole of a canned cycle to the next, and its initial level.
+    answers
+        What the machine has answered so far; None: nobody answers.
     """
 
     motion: int = NO_MOTION
@@ -148,6 +151,7 @@ class State:
     compensation: Compensator | None = None
     profile: Profile | None = None
     straight_next: bool = False
+    answers: Answers | None = None
 
     @property
     def scale(self) -> float:

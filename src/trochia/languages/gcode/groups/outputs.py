@@ -10,6 +10,7 @@ from math import floor
 from typing import TYPE_CHECKING
 
 from trochia.errors import ModalConflictError, ParseError
+from trochia.languages.gcode.answers import Read, stop_reading
 from trochia.languages.gcode.codes import Code, Handler, table
 
 if TYPE_CHECKING:
@@ -46,7 +47,7 @@ def _analogue(*, synchronised: bool) -> Handler:
 
 
 def wait(block: Block, state: State, sink: Sink) -> None:
-    """M66: read an input, or wait for it; #5399 gets what it was, here 0, because nobody answers."""
+    """M66: read an input, or wait for it; #5399 gets what it was, 0 where nobody answers."""
     values = block.values
     if "p" in values and "e" in values:
         raise block.fault(ModalConflictError, "M66 takes a digital (P) or an analogue input (E), not both", "e",
@@ -63,8 +64,11 @@ def wait(block: Block, state: State, sink: Sink) -> None:
     if way and timeout <= 0:
         raise block.fault(ParseError, f"M66 L{way} needs a time, or it would wait for ever", "l",
                           hint="Write the longest time to wait as Q, in seconds.")  # fmt: skip
-    state.input_value = 0.0
     sink.wait_input(index, analogue=analogue, wait=way, timeout=timeout)
+    answer = state.answers.take() if state.answers is not None else None
+    if state.answers is not None and answer is None:
+        stop_reading(block, state)
+    state.input_value = answer.value if isinstance(answer, Read) else 0.0
 
 
 _GROUP = "output"

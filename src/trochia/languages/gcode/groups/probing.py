@@ -1,7 +1,8 @@
 """G38.2 to G38.5: probing.  In: axis words, how far to go at most.  Out: straight_probe.
 
 Run without a machine the probe is taken to switch just short of the target, as LinuxCNC's stand-alone interpreter has
-it: the point of the program lies that far back on the way.
+it: the point of the program lies that far back on the way, #5061 to #5069 tell the target, #5070 is 0.  A machine that
+answers says where it was (:mod:`trochia.languages.gcode.answers`).
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from math import sqrt
 from typing import TYPE_CHECKING
 
 from trochia.errors import ModalConflictError, ParseError
+from trochia.languages.gcode.answers import PROBED, Probed, note_probed, stop_reading
 from trochia.languages.gcode.codes import Code, Handler, table
 from trochia.languages.gcode.groups.motion import target_of
 from trochia.program.modes import TimeLaw
@@ -37,9 +39,19 @@ def _probe(number: float, *, toward: bool, must: bool) -> Handler:
         if end == state.position:
             raise block.fault(ModalConflictError, "the probing move goes nowhere", block.mover,
                               hint="Its end must differ from the point it starts at.")  # fmt: skip
-        sink.straight_probe(end, toward=toward, must=must)
-        state.position = _contact(state, end)
         state.motion = round(number * 10)
+        if state.answers is None:
+            sink.straight_probe(end, toward=toward, must=must)
+            state.parameters.fill(PROBED, [*end, 0.0])
+            state.position = _contact(state, end)
+            return
+        answer = state.answers.take()
+        if isinstance(answer, Probed):
+            note_probed(state, answer)
+            sink.straight_probe(state.position, toward=toward, must=must)
+        else:
+            sink.straight_probe(end, toward=toward, must=must)
+            stop_reading(block, state)
 
     return probe
 
