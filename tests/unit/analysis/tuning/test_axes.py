@@ -15,8 +15,6 @@ from trochia.analysis.tuning.optimise import breach
 from trochia.analysis.tuning.rules import ziegler_nichols_closed
 from trochia.analysis.tuning.shaping import step_on_twin
 from trochia.errors import ConfigError, LimitError
-from trochia.experiments import Bounds, TwinAxis
-from trochia.experiments.relay import relay
 from trochia.machine.friction import Friction
 from trochia.machine.servo_plant import Amplifier, ServoPlant
 from trochia.servo import Loop, Pid
@@ -94,31 +92,6 @@ def test_the_ultimate_gain_is_where_the_response_is_minus_one() -> None:
     found = ultimate(LAGGING, PERIOD)
     value = complex(plant_response(LAGGING, np.array([1.0 / found.time]), PERIOD)[0])
     assert found.gain * value == pytest.approx(-1.0, abs=1e-6)
-
-
-@pytest.mark.parametrize(("load", "dry"), [(0.0, 0.0), (0.02, 0.0)])
-def test_a_relay_swings_where_the_loop_is_minus_one(load: float, dry: float) -> None:
-    """The describing function: Ku |G(jw)| = 1 at the swing's frequency, to the accuracy of the method."""
-    plant = ServoPlant(amplifier=LAGGING.amplifier, torque_constant=0.1, motor_inertia=1e-3, load=load, counts=50000.0,
-                       motor_friction=Friction(viscous=1e-2, coulomb=dry))  # fmt: skip
-    axis = TwinAxis(plant, PERIOD)
-    found = relay(axis, Bounds(low=-10.0, high=10.0, command=5.0), size=1.0, hysteresis=1e-3)
-    assert not axis.enabled
-    size = abs(complex(plant_response(LAGGING, np.array([1.0 / found.time.value]), PERIOD)[0]))
-    assert found.gain.value * size == pytest.approx(1.0, rel=0.05)
-    assert found.bias * 0.1 == pytest.approx(load, abs=0.1 * 0.02)
-    assert found.gain.sigma < 0.05 * found.gain.value
-    assert found.time.value == pytest.approx(ultimate(LAGGING, PERIOD).time, rel=0.2)  # hysteresis and a tick's delay
-
-
-def test_a_relay_that_asks_too_much_is_refused_before_it_moves() -> None:
-    axis = TwinAxis(LAGGING, PERIOD)
-    with pytest.raises(LimitError, match="would command 9"):
-        relay(axis, Bounds(low=-10.0, high=10.0, command=5.0), size=9.0, hysteresis=1e-3)
-    with pytest.raises(LimitError, match="less than two counts"):
-        relay(axis, Bounds(low=-10.0, high=10.0, command=5.0), size=1.0, hysteresis=1e-6)
-    assert axis.position == 0.0
-    assert not axis.enabled
 
 
 def test_gains_can_be_had_back() -> None:
