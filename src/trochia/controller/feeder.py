@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from trochia.planner.live import LivePlan, Portion
 
 ROW = 0.004  #: longest time of a row [s]
+ASTRAY = 2.5e-7  #: greatest distance of a row from the plan [mm or degree]
 DONE = 1e-6  #: a motion is at its end that near [s]
 CHUNK = 0.05  #: motion sent at a time [s]
 STOP = 0.6  #: ∫ s du that is kept ahead; a half stops from rate 1
@@ -142,14 +143,26 @@ class Feeder:
     def _enough(self, now: float) -> bool:
         return self.sent - now >= self._ahead and sum(stop for _, stop in self._stops) >= STOP
 
-    def _rows(self, part: Portion) -> Segments:
-        """Return a portion as segments, cut where jerk changes and at least every ROW."""
+    def _cuts(self, part: Portion) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return beginnings and durations of rows [s]: cut where jerk changes, every ROW, and where they stray.
+
+        A row is the cubic through its ends; in a bend the plan leaves it by its fourth derivative times h^4 / 384.
+        """
         starts, durations = part.phases["t"], part.phases["duration"]
         counts = np.maximum(np.ceil(durations / ROW - 1e-9), 1).astype(np.intp)
-        phase = np.repeat(np.arange(len(counts)), counts)
-        within = np.arange(len(phase)) - np.repeat(np.cumsum(counts) - counts, counts)
-        h = durations[phase] / counts[phase]
-        begin = starts[phase] + within * h
+        begin, h = _evenly(starts, durations, counts)
+        ends = np.append(begin, part.end)
+        place, speed = part.derivative(ends, 0), part.derivative(ends, 1)
+        middle = 0.5 * (place[1:] + place[:-1]) - 0.125 * h[:, None] * (speed[1:] - speed[:-1])
+        astray = np.abs((part.derivative(begin + 0.5 * h, 0) - middle) @ self._matrix.T).max(axis=1)
+        if astray.max() <= ASTRAY:
+            return begin, h
+        worst = np.maximum.reduceat(astray, np.cumsum(counts) - counts)
+        return _evenly(starts, durations, counts * np.ceil(np.maximum(worst / ASTRAY, 1.0) ** 0.25).astype(np.intp))
+
+    def _rows(self, part: Portion) -> Segments:
+        """Return a portion as segments."""
+        begin, h = self._cuts(part)
         times = np.append(begin, part.end)
         place = part.derivative(times, 0) @ self._matrix.T
         speed = part.derivative(times, 1) @ self._matrix.T
@@ -183,3 +196,13 @@ class Feeder:
         with np.errstate(divide="ignore", invalid="ignore"):
             slew = np.where(np.abs(v) > 1e-9, np.maximum(room, 0.0) / np.abs(v), STEEPEST)
         return np.minimum(slew.min(axis=1).reshape(len(h), -1).min(axis=1), STEEPEST)
+
+
+def _evenly(
+    starts: NDArray[np.float64], durations: NDArray[np.float64], counts: NDArray[np.intp]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return beginnings and durations of phases cut into so many rows each [s]."""
+    phase = np.repeat(np.arange(len(counts)), counts)
+    within = np.arange(len(phase)) - np.repeat(np.cumsum(counts) - counts, counts)
+    h = durations[phase] / counts[phase]
+    return starts[phase] + within * h, h
