@@ -95,7 +95,7 @@ class Recording:
     @property
     def axes(self) -> tuple[str, ...]:
         """Letters of the axes with a commanded position, in the machine's order."""
-        return self._owners("", ".commanded")
+        return tuple(owner for owner in self._owners("", ".commanded") if "." not in owner)  # a joint has it too
 
     @property
     def joints(self) -> tuple[str, ...]:
