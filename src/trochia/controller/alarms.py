@@ -68,7 +68,7 @@ TROUBLES: dict[Cause, Row] = {
         "emergency stop", "Release the button, reset, switch the drives on and home.", at_once=True, trusted=False,
         dark=True,
     ),
-    Cause.DOOR: Row("the door was opened", "Close the door, then acknowledge."),
+    Cause.DOOR: Row("{text}", "Close what is open, then acknowledge."),
     Cause.HOMING: Row("homing {axis} failed: {text}", "Look at the switch, its wiring and the machine file's homing."),
     Cause.PROBE: Row("probing failed: {text}", "Look at the probe and the way it was given."),
     Cause.PROGRAM: Row("the program cannot go on: {text}", "Mend the line named, then run from it."),

@@ -19,6 +19,7 @@ from trochia.controller.handlers import HANDLERS
 from trochia.controller.interrupted import Interrupted, work_entry
 from trochia.controller.job import BLOCK_END, Job
 from trochia.controller.jog import Jog
+from trochia.controller.panel import Watch
 from trochia.controller.readying import MDI, Readier
 from trochia.controller.states import MOVING, TABLE, Event, State, legal
 from trochia.controller.status import axes_of, axis_statuses, io_of, position_of, unit_of
@@ -73,6 +74,10 @@ class Controller:
         self.interrupted: Interrupted | None = None  # the job before, if it did not come to its end
         self.activity: Activity | None = None
         self.request: Request | None = None
+        self.panel = Watch(machine.panel)
+        self.asked = 0.0  # when a command came last [s]
+        self.resume_at: float | None = None  # when a job is resumed whose spindle has to get to its speed first [s]
+        self._spindle_stopped = False
         self.armed = machine.beam is None
         self.trusted = {axis.name: axis.home is None for axis in machine.axes}
         self.journal: list[tuple[str, dict[str, Any]]] = []
@@ -87,6 +92,7 @@ class Controller:
     def command(self, command: AnyCommand, now: float) -> Ack:
         """Take a command, or say why not; what it starts is in the orders of the next step."""
         kind = str(type(command).__struct_config__.tag)
+        self.asked = now
         if (self.state, kind) not in TABLE:
             allowed = legal(self.state)
             return Ack(id=command.id, ok=False, reason=f"{kind} is not taken while {self.state.value}", legal=allowed)
@@ -108,6 +114,7 @@ class Controller:
             self.fault(trouble)
         for trouble in self._guards.troubles(report, homing=self.state is State.HOMING):
             self.fault(trouble)
+        self.panel.look(self, now)
         self._look_at_power()
         if isinstance(self.activity, Jog) and self.activity.expired(now):
             self.activity.hold(report, self.latency)
@@ -134,7 +141,7 @@ class Controller:
             axes=axis_statuses(self.machine, report, self.work, self.trusted), legal=legal(self.state),
             overrides=self.overrides, switches=self.switches, program=self._program(), request=self.request,
             alarms=tuple(self.alarms.latched), speed=float(np.linalg.norm(self.velocity)), rate=report.rate,
-            beam=report.beam, armed=self.armed, spindle=report.outputs.get("spindle", 0.0),
+            beam=report.beam, armed=self.lightable, spindle=report.outputs.get("spindle", 0.0),
             flood=bool(report.outputs.get("flood")), mist=bool(report.outputs.get("mist")), tool=self.work.tool,
             system=self.work.active, io=io_of(report), queued_s=report.queued,
         )  # fmt: skip
@@ -192,6 +199,37 @@ class Controller:
             self.pending.append(Orders(stop=True, lit=False))
             self.activity = None
 
+    @property
+    def lightable(self) -> bool:
+        """Whether programs may light the beam: it is armed, and nothing guards it."""
+        return self.armed and not self.panel.dark(self)
+
+    def stop_now(self) -> None:
+        """Stop everything, drives off, positions lost: an emergency stop."""
+        self.fault(Trouble(cause=Cause.ESTOP))
+        self.pending.append(Orders(stop=True, enable=False, lit=False))
+        self.end(whole=False)
+        self.distrust()
+        self.enter(State.ESTOP)
+
+    def stop_spindle(self) -> None:
+        """Stop the spindle of the job under way, until it is resumed."""
+        if isinstance(self.activity, Job) and self.activity.doings.speed and self.machine.spindle is not None:
+            self.pending.append(Orders(outputs={"spindle": 0.0}))
+            self._spindle_stopped = True
+
+    def resume(self, job: Job) -> None:
+        """Go on with a job: at once, or when its spindle is at speed again."""
+        self.pending.append(Orders(lit=self.lightable and not job.options.dark))
+        if self._spindle_stopped:
+            self._spindle_stopped = False
+            self.pending.append(Orders(outputs=dict(job.doings.turning())))
+            self.resume_at = self.report.time + (self.machine.spindle.spin_up if self.machine.spindle else 0.0)
+        else:
+            self.resume_at = self.report.time
+        self.back = np.inf
+        self._resume_in_time()
+
     def distrust(self, joint: str = "") -> None:
         """Note that positions are lost: of the axes a joint moves, or of all."""
         rows = {j.name: row for j, row in zip(self.machine.joints, self.machine.kinematics.matrix, strict=True)}
@@ -218,7 +256,8 @@ class Controller:
                     move=int(point["move"]), distance=point["distance"], done_s=point["done_s"],
                     answers=made.answers or (),
                 )  # fmt: skip
-        self.activity = self.running = self.request = None
+        self.activity = self.running = self.request = self.resume_at = None
+        self._spindle_stopped = False
 
     # -- inside
 
@@ -227,6 +266,12 @@ class Controller:
         if state is not self.state:
             self.note("state", state=state.value, was=self.state.value)
             self.state = state
+
+    def _resume_in_time(self) -> None:
+        """Resume the job once its spindle is at speed."""
+        if self.resume_at is not None and self.report.time >= self.resume_at and isinstance(self.activity, Job):
+            self.resume_at = None
+            self.back = self.activity.resume(self.report, feed=self.overrides.feed, rapid=self.overrides.rapid)
 
     def _look_at_power(self) -> None:
         """Take drives that go off by themselves for a fault."""
@@ -239,7 +284,9 @@ class Controller:
 
     def _events(self) -> None:
         """Let what has come about change the state."""
-        if self.activity is not None and self.state is not State.HELD:
+        if self.state is State.RESUMING and self.resume_at is not None:
+            self._resume_in_time()
+        elif self.activity is not None and self.state is not State.HELD:
             event = self.activity.event(self.report)
             if event is not None:
                 self._happen(event)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from trochia.backends.live import Orders, Trouble
+from trochia.backends.live import Orders
 from trochia.backends.switches import switches_of
 from trochia.controller.doings import OUTPUTS_OFF
 from trochia.controller.guards import stands_on
@@ -21,7 +21,6 @@ from trochia.controller.readying import MDI
 from trochia.controller.starting import LEAST, begin, check_overrides, known, run_from, start
 from trochia.controller.states import State
 from trochia.errors import LimitError, LocalProtocolError, OutOfTravelError
-from trochia.messages import Cause
 from trochia.messages import command as c
 from trochia.program import AXES
 
@@ -36,7 +35,10 @@ if TYPE_CHECKING:
 
 def enable(it: Controller, _command: c.Enable, _now: float) -> str:
     """Switch the drives on."""
-    it.pending.append(Orders(enable=True, lit=it.armed))
+    for key, what in (("estop", "the emergency stop is pressed"), ("interlock", "the interlock is broken")):
+        if it.panel.active(it, key):
+            raise LocalProtocolError(what, hint="Release or close it first.")
+    it.pending.append(Orders(enable=True, lit=it.lightable))
     return ""
 
 
@@ -48,15 +50,14 @@ def disable(it: Controller, _command: c.Disable, _now: float) -> str:
 
 def estop(it: Controller, _command: c.EmergencyStop, _now: float) -> str:
     """Stop everything now."""
-    it.fault(Trouble(cause=Cause.ESTOP))
-    it.pending.append(Orders(stop=True, enable=False, lit=False))
-    it.end(whole=False)
-    it.distrust()
+    it.stop_now()
     return ""
 
 
 def reset(it: Controller, _command: c.Reset, _now: float) -> str:
     """Leave the emergency stop."""
+    if it.panel.active(it, "estop"):
+        raise LocalProtocolError("the emergency stop is pressed", hint="Release it first.")
     it.alarms.acknowledge()
     return "home the machine before it runs a program"
 
@@ -123,9 +124,10 @@ def abort(it: Controller, _command: c.Abort, _now: float) -> str:
 def resume(it: Controller, _command: c.Resume, _now: float) -> str:
     """Go on."""
     check_overrides(it)
+    it.panel.check_safe(it)
     if isinstance(it.activity, Job):
         it.activity.by_block = it.switches.single_block
-        it.back = it.activity.resume(it.report, feed=it.overrides.feed, rapid=it.overrides.rapid)
+        it.resume(it.activity)
     it.request = None
     return ""
 
@@ -261,8 +263,8 @@ def set_input(it: Controller, command: c.SetInput, _now: float) -> str:
 def arm_beam(it: Controller, command: c.ArmBeam, _now: float) -> str:
     """Allow or forbid the beam."""
     it.armed = command.on
-    it.pending.append(Orders(lit=command.on))
-    return ""
+    it.pending.append(Orders(lit=it.lightable))
+    return it.panel.dark(it) if command.on else ""
 
 
 def _axis(it: Controller, name: str) -> Axis:

@@ -83,6 +83,7 @@ def begin(it: Controller, text: str, name: str, *, block_by_block: bool) -> str:
 
 def _go(it: Controller, made: Ready, *, block_by_block: bool, inside: Entry | None = None) -> str:
     """Begin a job of what is planned."""
+    it.panel.check_safe(it)
     options = Options(
         optional_stop=it.switches.optional_stop, block_by_block=block_by_block,
         dark=it.switches.dry_run, feed=it.overrides.feed, rapid=it.overrides.rapid, spindle=it.overrides.spindle,
@@ -91,7 +92,7 @@ def _go(it: Controller, made: Ready, *, block_by_block: bool, inside: Entry | No
     job.entry = inside
     it.begin(job)
     it.running = made
-    it.pending.append(Orders(lit=it.armed and not it.switches.dry_run, watch=()))
+    it.pending.append(Orders(lit=it.lightable and not it.switches.dry_run, watch=()))
     if made.name != MDI:
         it.interrupted = None
         start = dict(zip(AXES, (float(at) for at in made.start), strict=True))

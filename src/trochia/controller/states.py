@@ -38,6 +38,7 @@ class Event(Enum):
     CONTACT = "Contact"  # the probe has answered, and motion is at rest
     ANSWER = "Answer"  # the input that M66 reads, or waits for, has answered
     BACK = "Back"  # at speed again where a hold began
+    RELEASED = "Released"  # nobody has used the drives for a while
     FAULT = "Fault"
     CLEARED = "Cleared"  # all alarms acknowledged, none still there, drives on
     DARK = "Dark"  # the same with the drives off
@@ -100,6 +101,7 @@ _HANDS = {
 _POWER = {
     (State.OFF, "enable"): State.IDLE,
     (State.IDLE, "disable"): State.OFF,
+    (State.IDLE, Event.RELEASED): State.OFF,
     (State.ALARM, Event.CLEARED): State.IDLE,
     (State.ALARM, Event.DARK): State.OFF,
     (State.ESTOP, "reset"): State.OFF,

@@ -39,7 +39,7 @@ def check(machine: Machine) -> None:
                 raise ConfigError("missing: the profile s-curve needs it", key=f"axes.{axis.name}.jerk")
     _check_pins(machine)
     _check_switches(machine)
-    _check_probe(machine)
+    _check_panel(machine)
 
 
 def _check_names(machine: Machine) -> None:
@@ -157,12 +157,17 @@ def _check_switches(machine: Machine) -> None:
                                   hint=did_you_mean(name, inputs))  # fmt: skip
 
 
-def _check_probe(machine: Machine) -> None:
-    """Refuse a probe that is no input of the machine."""
+def _check_panel(machine: Machine) -> None:
+    """Refuse a probe and guards that are no inputs of the machine, and a beam's key where there is no beam."""
     inputs = [channel.name for channel in machine.io if channel.kind == "input"]
-    if machine.probe is not None and machine.probe.input not in inputs:
-        raise ConfigError(f"there is no input {machine.probe.input!r} under [io]", key="probe.input",
-                          hint=did_you_mean(machine.probe.input, inputs))  # fmt: skip
+    named = {f"panel.{key}": name for key, name in (machine.panel.inputs if machine.panel else {}).items()}
+    if machine.probe is not None:
+        named["probe.input"] = machine.probe.input
+    for key, name in named.items():
+        if name not in inputs:
+            raise ConfigError(f"there is no input {name!r} under [io]", key=key, hint=did_you_mean(name, inputs))
+    if machine.beam is None and "panel.arm" in named:
+        raise ConfigError("only a machine with a beam has one", key="panel.arm", hint="Add [beam], or leave it out.")
 
 
 def _has_index(machine: Machine, axis: str) -> bool:

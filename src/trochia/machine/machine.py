@@ -9,6 +9,7 @@ from trochia.machine.axes import LETTERS, PathLimits
 from trochia.machine.checks import check
 from trochia.machine.codecs import Flag, Quantity, Text
 from trochia.machine.io import Beam, Spindle
+from trochia.machine.panel import Panel
 from trochia.machine.probe import Probe
 from trochia.machine.schema import Bound, Record, check_bounds, key
 
@@ -91,6 +92,7 @@ class Machine:
     spindle: Spindle | None = field(default=None, metadata=key(Record(Spindle), "the spindle"))
     beam: Beam | None = field(default=None, metadata=key(Record(Beam), "a laser or the like"))
     probe: Probe | None = field(default=None, metadata=key(Record(Probe), "a touch probe"))
+    panel: Panel | None = field(default=None, metadata=key(Record(Panel), "inputs that guard people"))
     io: tuple[Channel, ...] = field(default=())
 
     def __post_init__(self) -> None:

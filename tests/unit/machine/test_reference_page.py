@@ -19,6 +19,7 @@ from trochia.machine.kinematics import KINEMATICS
 from trochia.machine.loads import JointLoad
 from trochia.machine.machine import Machine
 from trochia.machine.motors import CatalogueStepper
+from trochia.machine.panel import Panel
 from trochia.machine.probe import Part, Probe
 from trochia.machine.resonance import Resonance
 from trochia.machine.schema import Bound, Key, Record, Variant, keys_of
@@ -30,6 +31,7 @@ TABLES = {
     "Top of the file": Machine, "path": PathLimits, "axes.X": Axis, "resonance": Resonance,
     "home": Homing, "limit_minus and limit_plus": LimitSwitch, "joints.X": Joint, "encoder": Encoder,
     "pulses": PulseTiming, "spindle": Spindle, "beam": Beam, "io.NAME": Channel, "probe": Probe, "part": Part,
+    "panel": Panel,
     "catalogue": CatalogueStepper, "load": JointLoad,
 } | {f"motor, kind {kind}": cls for kind, cls in MOTORS.items()} | {
     f"transmission, kind {kind}": cls for kind, cls in TRANSMISSIONS.items()
