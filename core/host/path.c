@@ -68,6 +68,18 @@ int32_t trochia_path_check(const trochia_segment *segments, uint64_t count, uint
     return 0;
 }
 
+void trochia_path_append(const trochia_segment *segments, uint64_t count, uint64_t shift, uint32_t first,
+                         const trochia_move *moves, trochia_segment *out, uint32_t *lines, float *power) {
+    for (uint64_t k = 0; k < count; k++) {
+        const trochia_move *move = &moves[segments[k].move];
+        out[k] = segments[k];
+        out[k].data += shift; /* modulo 2^64: also back */
+        out[k].move += first;
+        lines[k] = move->line;
+        power[k] = move->power;
+    }
+}
+
 /* Chain rule: of x(s(t)) with ds/dt = v, its derivative a, and the derivative of that j. */
 void trochia_path_sample(const trochia_segment *segments, const double *pool, uint32_t n, const trochia_phase *states,
                          uint64_t count, uint32_t order, double *out) {

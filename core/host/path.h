@@ -55,6 +55,11 @@ void trochia_path_sample(const trochia_segment *segments, const double *pool, ui
  * 2 where a segment is of no kind, or an arc in a plane that is not there. */
 int32_t trochia_path_check(const trochia_segment *segments, uint64_t count, uint64_t room, uint32_t n);
 
+/* Copies `count` segments behind others of a path: their coefficients have moved by `shift` in the pool, their moves
+ * count from `first` now; lines and power are those of their moves, whose rows `moves` are. */
+void trochia_path_append(const trochia_segment *segments, uint64_t count, uint64_t shift, uint32_t first,
+                         const trochia_move *moves, trochia_segment *out, uint32_t *lines, float *power);
+
 /* Widens least[n], greatest[n] by the segments [first, last), exactly (arcs and cubics by the roots of x'). */
 void trochia_path_extents(const trochia_segment *segments, const double *pool, uint32_t n, uint64_t first,
                           uint64_t last, double *least, double *greatest);

@@ -184,3 +184,21 @@ def test_a_path_that_points_outside_its_pool_is_refused():
         kernel.check(segments, np.zeros(30), 2)
     segments["second"] = 1
     kernel.check(segments, np.zeros(11), 2)
+
+
+def test_segments_are_appended_with_their_place_and_moves():
+    moves = moves_of((1, 0, 0, 0), (1, 2, 0, 0), (3, 0, 0, 0))
+    moves["line"], moves["power"] = (5, 6, 9), (0.0, 0.5, 1.0)
+    segments, *_ = built(moves)
+    count = len(segments)
+    rows, lines, power = np.zeros(count, dtype=SEGMENT), np.zeros(count, np.uint32), np.zeros(count, np.float32)
+    kernel.append(segments, moves, (rows, lines, power), shift=-3, first=100)
+    assert (rows["length"] == segments["length"]).all()
+    assert (rows["data"] == segments["data"] - np.uint64(3)).all()
+    assert (rows["move"] == segments["move"] + 100).all()
+    assert (lines == moves["line"][segments["move"]]).all()
+    assert (power == moves["power"][segments["move"]]).all()
+    with pytest.raises(ValueError, match="as many"):
+        kernel.append(segments, moves, (rows[1:], lines, power), shift=0, first=0)
+    with pytest.raises(ValueError, match="not there"):
+        kernel.append(segments, moves[:1], (rows, lines, power), shift=0, first=0)

@@ -149,6 +149,40 @@ def check(segments: NDArray[np.void], pool: NDArray[np.float64], axes: int) -> N
         raise ValueError("a segment of unknown kind, or an arc in a plane that is not there")
 
 
+def append(
+    segments: NDArray[np.void],
+    moves: NDArray[np.void],
+    into: tuple[NDArray[np.void], NDArray[np.uint32], NDArray[np.float32]],
+    *,
+    shift: int,
+    first: int,
+) -> None:
+    """Copy segments, and line and power of their moves, into as many rows behind those of the same path.
+
+    Parameters
+    ----------
+    segments
+        Rows of SEGMENT (k,).
+    moves
+        Rows of MOVE that they belong to.
+    into
+        Segments, lines, power (k,) each.
+    shift
+        How far their coefficients have moved in the pool.
+    first
+        Number of the first of ``moves``.
+    """
+    rows, lines, power = into
+    if not len(segments) == len(rows) == len(lines) == len(power):
+        raise ValueError("as many rows as segments")
+    if len(segments) and int(segments["move"].max()) >= len(moves):
+        raise ValueError("segments of moves that are not there")
+    lib.trochia_path_append(
+        pointer(segments, "trochia_segment *"), len(segments), shift % 2**64, first, pointer(moves, "trochia_move *"),
+        pointer(rows, "trochia_segment *"), pointer(lines, "uint32_t *"), pointer(power, "float *"),
+    )  # fmt: skip
+
+
 def sample(
     segments: NDArray[np.void], pool: NDArray[np.float64], axes: int, states: NDArray[np.void], order: int
 ) -> NDArray[np.float64]:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from trochia.kernels.layout import MOVE
 from trochia.planner.live.change import Ahead
 from trochia.planner.live.pieces import reversed_path
 from trochia.planner.live.road import Place, Road, Stretch
@@ -66,10 +67,12 @@ def way_back(road: Road, start: Place, end: Place) -> Road | None:
     if not len(rows):
         return None
     first = start.row - base - (0 if start.s > 0.0 else 1)
-    lines = road.lines[first - len(rows) + 1 : first + 1][::-1]
+    low = int(rows["move"].min())
+    rows["move"] -= np.uint32(low)
+    moves = np.zeros(int(rows["move"].max()) + 1, dtype=MOVE)
+    moves["line"][rows["move"]] = road.lines(base + first - len(rows) + 1, base + first + 1)[::-1]
     none = np.zeros(0)
-    back = Road(road.axes, iter([Stretch(segments=rows, pool=pool, lines=lines.copy(),
-                                         power=np.zeros(len(rows), dtype=np.float32),
+    back = Road(road.axes, iter([Stretch(segments=rows, pool=pool, moves=moves, first_move=low,
                                          rests=none.astype(np.uint64), seconds=none, start=pool[:0])]))  # fmt: skip
     back.more()
     back.more()

@@ -103,7 +103,7 @@ class LivePlan:
         """
         rests = rests_of(trajectory.program, machine, trajectory.path)
         stretch = Stretch.of(trajectory.path, trajectory.program, rests)
-        return cls(Road(trajectory.path.axes, iter([stretch])), Rules.of(machine, trajectory.profile))
+        return cls(Road.whole(trajectory.path.axes, stretch), Rules.of(machine, trajectory.profile))
 
     @classmethod
     def streaming(cls, blocks: Iterable[Program], machine: Machine, *, profile: str | None = None) -> LivePlan:
@@ -222,11 +222,13 @@ class LivePlan:
         if leg.back_to is not None:
             place = forward_of(leg.start, leg.ahead.road, place, leg.back_to)
         road = self._road
-        row = min(place.row, road.end - 1) - road.base
-        first = max(row - _LOOK, 0)
-        other = np.flatnonzero(road.lines[first:row] != road.lines[row]) if row > 0 else np.zeros(0, np.intp)
+        row = min(place.row, road.end - 1)
+        first = max(row - _LOOK, road.base)
+        lines = road.lines(first, row + 1) if row >= first else np.zeros(1, np.uint32)
+        other = np.flatnonzero(lines[:-1] != lines[-1])
         begin = first + (int(other[-1]) + 1 if len(other) else 0)
-        return place.row, float(road.segments["length"][begin:row].sum()) + place.s
+        way = road.segments["length"][begin - road.base : row - road.base]
+        return place.row, float(way.sum()) + place.s
 
     def portions(self, begin: float, end: float) -> Iterator[Portion]:
         """Yield the motion from one instant to another as portions; at rest in a hold there is none."""

@@ -9,6 +9,7 @@ indeed.
 
 from __future__ import annotations
 
+from bisect import bisect_left, bisect_right
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,6 +19,7 @@ from trochia.planner.live.change import Ahead, change
 from trochia.planner.live.hold import hold
 from trochia.planner.live.portion import moved_on, states_at
 from trochia.planner.live.road import Place
+from trochia.planner.live.rows import joined
 from trochia.planner.live.window import plan_window
 
 if TYPE_CHECKING:
@@ -163,7 +165,7 @@ class Lookahead:
             self._end = min(self._end, self.road.end)
         while True:
             led, rest = self._way_over(old, t)
-            self.phases, self.safe = np.concatenate([led, rest]), 0
+            self.phases, self.safe = joined([led, rest]), 0
             self._settle(len(led))
             if self.safe or self.finished:
                 return
@@ -191,7 +193,7 @@ class Lookahead:
         most = self.safe_time - 4.0 * WARM * self._stop
         drop = _joint_before(self.phases, min(t, most), 0)
         if drop:
-            self.phases = self.phases[drop:].copy()
+            self.phases = self.phases[drop:]
             self.safe -= drop
             self.road.trim(int(self.phases["segment"][0]))
         return drop or 0
@@ -210,7 +212,8 @@ class Lookahead:
             phases = _still(self.road, start)
         if self._rested and start == self._start:
             phases = phases[phases["flags"].argmin() :]
-        phases["t"] += t - phases["t"][0]
+        if t != phases["t"][0]:
+            phases["t"] += t - phases["t"][0]
         return phases
 
     def _reach(self, row: int, times: float, least: int = 0) -> int:
@@ -222,10 +225,14 @@ class Lookahead:
             if end >= road.end and not road.more():
                 return road.end
             rows = road.segments[end - road.base : end - road.base + _BLOCK]
-            times_of = np.cumsum(rows["length"] / np.minimum(rows["speed_limit"] * self.speeds.feed, most))
-            count = min(max(int(np.searchsorted(times_of, wanted)) + 1, row + least - end), len(rows))
-            wanted -= float(times_of[count - 1]) if count else 0.0
-            end += count
+            seconds: NDArray[np.float64] = rows["length"] / np.minimum(rows["speed_limit"] * self.speeds.feed, most)
+            whole = float(seconds.sum())
+            if whole < wanted or end + len(rows) <= row + least:
+                count = len(rows)
+            else:
+                count = max(int(np.searchsorted(np.cumsum(seconds), wanted)) + 1, row + least - end)
+            wanted -= whole
+            end += min(count, len(rows))
         if end >= road.end:
             road.more()  # whether the program ends here
         return end
@@ -259,7 +266,7 @@ class Lookahead:
         joints = _joints(old)
         if not self._splice(new, [int(k) for k in joints[joints > joint]]):
             rest = self.end_time
-            self.phases = np.concatenate([old, self._from(Place(int(old["segment"][-1]) + 1, 0.0), rest)])
+            self.phases = joined([old, self._from(Place(int(old["segment"][-1]) + 1, 0.0), rest)])
 
     def _first(self) -> Place:
         """Return where the phases in hand begin: at rest where motion does, else at a joint."""
@@ -273,13 +280,13 @@ class Lookahead:
         """Go on as ``new`` from the first of some joints where it agrees with the phases in hand; False: nowhere."""
         for joint in joints:
             here = self.phases[joint]
-            k = int(np.searchsorted(new["segment"], here["segment"]))
+            k = bisect_left(new["segment"], here["segment"])
             while k < len(new) and new["flags"][k] & 1:
                 k += 1
             if k < len(new) and new["segment"][k] == here["segment"] and self._agree(here, new[k]):
                 rest = new[k:]
                 rest["t"] += here["t"] - rest["t"][0]
-                self.phases = np.concatenate([self.phases[:joint], rest])
+                self.phases = joined([self.phases[:joint], rest])
                 return True
         return False
 
@@ -310,7 +317,7 @@ def _joints(phases: NDArray[Any]) -> NDArray[np.intp]:
 
 def _joint_before(phases: NDArray[Any], t: float, least: int) -> int | None:
     """Return the last phase, ``least`` or later, that begins where its segment does, in motion and not after ``t``."""
-    end = int(np.searchsorted(phases["t"], t, side="right"))
+    end = bisect_right(phases["t"], t)
     first = end
     while first > least:
         first = max(least, first - _LOOK)

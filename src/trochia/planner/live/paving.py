@@ -8,12 +8,16 @@ compared with what the piece before had made of it, and where they differ, it is
 
 from __future__ import annotations
 
+from bisect import bisect_left
+from collections import deque
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from trochia.errors import PlanningError
+from trochia.kernels.path import Room
+from trochia.planner.live.held import Held
 from trochia.planner.live.road import Stretch
 from trochia.planner.rests import rests_of
 from trochia.program import MoveKind, Program, Spindle
@@ -38,6 +42,8 @@ _FIRST = 1_024  #: and at the start, so that motion begins soon
 def pave(blocks: Iterable[Program], machine: Machine, *, continuity: int) -> Iterator[Stretch]:
     """Yield the path of a program whose blocks follow each other; each counts moves and actions from its own start.
 
+    A stretch is gone when the next one is asked for.
+
     Raises
     ------
     PlanningError, LimitError
@@ -51,11 +57,10 @@ class _Paver:
 
     def __init__(self, machine: Machine, continuity: int) -> None:
         self._machine, self._continuity = machine, continuity
-        self._moves: list[NDArray[Any]] = []
+        self._held, self._room = Held(), Room()
         self._program: Program | None = None
         self._splines: NDArray[np.float64] = np.zeros((0, 4, 3))  # those of the moves in hand
         self._actions: list[Action] = []  # `at` counts from the program's start
-        self._base = self._end = 0  # number of the first move in hand, and after the last
         self._done = 0  # all that moves before this one have become is out
         self._starts = [0] * len(HISTORIES)  # moves at which runs begin, that the next piece can be built from,
         self._level = 0  # and which of them is taken
@@ -65,29 +70,42 @@ class _Paver:
     def run(self, blocks: Iterator[Program]) -> Iterator[Stretch]:
         size = _FIRST
         for block in blocks:
-            for part in _parts(block):
-                self._take(part)
-                if self._end - self._done >= size + 2 * REACH:
+            actions, first, count = deque(block.actions), 0, len(block.moves)
+            self._begin(block)
+            while True:
+                wanted = max(self._done + size + 2 * REACH - self._held.end, 1)
+                end = min(first + wanted, count)
+                self._take(block, first, end, actions)
+                first = end
+                if self._held.end - self._done >= size + 2 * REACH:
                     stretch = self._build(last=False)
                     size = min(2 * size, _CHUNK) if stretch else 2 * size
                     if stretch is not None:
                         yield stretch
+                if first == count:
+                    break
         if self._program is not None and (stretch := self._build(last=True)) is not None:
             yield stretch
 
-    def _take(self, block: Program) -> None:
+    def _begin(self, block: Program) -> None:
         if self._program is None:
             self._program = replace(block, moves=block.moves[:0], actions=(), splines=block.splines[:0])
+
+    def _take(self, block: Program, first: int, end: int, actions: deque[Action]) -> None:
+        """Take the moves ``first`` up to ``end`` of a block, and off its actions those that stand before them."""
+        base = self._held.end - first
+        while actions and (actions[0].at < end or end == len(block.moves)):
+            action = actions.popleft()
+            self._actions.append(replace(action, at=action.at + base))
+        moves = block.moves
         if len(block.splines):
-            block = _own_splines(block, len(self._splines))
-            self._splines = np.concatenate([self._splines, block.splines])
-        self._actions += [replace(action, at=action.at + self._end) for action in block.actions]
-        self._moves.append(block.moves)
-        self._end += len(block.moves)
+            own = _own_splines(replace(block, moves=moves[first:end]), len(self._splines))
+            self._splines = np.concatenate([self._splines, own.splines])
+            moves, first, end = own.moves, 0, end - first
+        self._held.take(moves, first, end)
 
     def _build(self, *, last: bool) -> Stretch | None:
         """Return what can be said of the moves in hand; None where that is nothing."""
-        self._moves = [np.concatenate(self._moves)]
         program, path, first = self._path(self._starts[self._level])
         while not self._fits(path, first):
             if self._level + 1 == len(self._starts):
@@ -95,31 +113,31 @@ class _Paver:
             self._level += 1
             program, path, first = self._path(self._starts[self._level])
         moves, base = path.segments["move"], self._starts[self._level]
-        runs = _runs(moves[first:])
-        if not last and len(runs) <= 2 * REACH:
+        run = None if last else _run_from_end(moves[first:], REACH, least=2 * REACH + 1)
+        if run is None and not last:
             return None
-        cut = int(runs[-REACH]) if not last else len(program.moves) + 1
-        end = int(np.searchsorted(moves, cut))
+        cut = len(program.moves) + 1 if run is None else run
+        end = len(path) if run is None else bisect_left(moves, cut)
         stretch = self._stretch(program, path, first, end, last=last, base=base)
         if not last:
             self._seam, self._done = _look(path, end), base + cut
-            before = _runs(moves[:end])
-            self._starts = [base + int(before[-n]) if len(before) >= n else self._starts[-1] for n in HISTORIES]
+            runs = [_run_from_end(moves[:end], count) for count in HISTORIES]
+            self._starts = [self._starts[-1] if run is None else base + run for run in runs]
             self._drop()
         return stretch
 
     def _path(self, base: int) -> tuple[Program, Toolpath, int]:
         """Return the moves in hand from ``base`` on as a program, its path, and its first segment that is not out."""
         assert self._program is not None, "a path is built of at least one block"
-        held, skip = self._moves[0], base - self._base
+        held, moves = self._held, self._held.since(base)
         turning = [a for a in self._actions if isinstance(a, Spindle) and a.at < base]
         before = [turning[-1]] if turning else [self._spindle] if self._spindle else []
         actions = [replace(a, at=max(a.at - base, 0)) for a in (*before, *(a for a in self._actions if a.at >= base))]
-        start = self._program.start if skip == 0 else held["target"][skip - 1].copy()
-        program = replace(self._program, start=start, moves=held[skip:], actions=tuple(actions), splines=self._splines)
+        start = self._program.start if base == held.base else held.since(base - 1)["target"][0].copy()
+        program = replace(self._program, start=start, moves=moves, actions=tuple(actions), splines=self._splines)
         program = _own_splines(program, 0) if len(self._splines) else program
-        path = build(program, self._machine, continuity=self._continuity)
-        return program, path, int(np.searchsorted(path.segments["move"], max(self._done - base, 0)))
+        path = build(program, self._machine, continuity=self._continuity, room=self._room)
+        return program, path, bisect_left(path.segments["move"], max(self._done - base, 0))
 
     def _fits(self, path: Toolpath, first: int) -> bool:
         """Return whether a piece begins with what the one before said would come."""
@@ -132,35 +150,43 @@ class _Paver:
                  base: int) -> Stretch:  # fmt: skip
         rests = rests_of(program, self._machine, path)
         kept = (rests.segments >= first) & ((rests.segments < end) | last)
-        rows = path.segments[first:end].copy()
+        rows = path.segments[first:end]
         low = int(rows["data"][0]) if len(rows) else 0
         high = int(path.segments["data"][end]) if end < len(path) else len(path.pool)
-        lines, power = program.moves["line"][rows["move"]], program.moves["power"][rows["move"]]
-        rows["data"] -= np.uint64(low)
-        rows["move"] += np.uint32(base)
-        return Stretch(segments=rows, pool=path.pool[low:high], lines=lines, power=power,
+        return Stretch(segments=rows, pool=path.pool[low:high], moves=program.moves, first_move=base,
                        rests=rests.segments[kept] - np.uint64(first), seconds=rests.seconds[kept],
                        start=path.start)  # fmt: skip
 
     def _drop(self) -> None:
         """Drop the moves that no further piece is built from."""
-        base = self._starts[-1]
-        if base == self._base:
+        base, held = self._starts[-1], self._held
+        if base == held.base:
             return
         assert self._program is not None, "moves are dropped of a program"
-        held, keep = self._moves[0], base - self._base
         turning = [a for a in self._actions if isinstance(a, Spindle) and a.at < base]
         self._spindle = turning[-1] if turning else self._spindle
         self._actions = [action for action in self._actions if action.at >= base]
-        self._program = replace(self._program, start=held["target"][keep - 1].copy())
-        self._moves, self._base = [held[keep:].copy()], base
+        self._program = replace(self._program, start=held.since(base - 1)["target"][0].copy())
+        held.drop(base)
         if len(self._splines):
-            kept = _own_splines(replace(self._program, moves=self._moves[0], splines=self._splines), 0)
-            self._moves, self._splines = [kept.moves], kept.splines
+            kept = _own_splines(replace(self._program, moves=held.since(base), splines=self._splines), 0)
+            self._held, self._splines = Held.of(kept.moves, base), kept.splines
+
+
+def _run_from_end(moves: NDArray[np.uint32], count: int, least: int = 0) -> int | None:
+    """Return the ``count``-th last of numbers that rise or stay; None where there are not so many, or ``least``."""
+    look, most = 2 * max(count, least), len(moves)
+    while True:
+        runs = _runs(moves[max(most - look, 0) :])
+        if len(runs) >= max(count, least):
+            return int(runs[-count])
+        if look >= most:
+            return None
+        look *= 4
 
 
 def _runs(moves: NDArray[np.uint32]) -> NDArray[np.uint32]:
-    """Return each of some rising numbers once."""
+    """Return each of some numbers that rise or stay once."""
     fresh = np.ones(len(moves), dtype=np.bool_)
     np.not_equal(moves[1:], moves[:-1], out=fresh[1:])
     return moves[fresh]
@@ -179,17 +205,3 @@ def _look(path: Toolpath, row: int) -> tuple[float, NDArray[np.float64]]:
     """Return length and first coefficients of a segment."""
     at = int(path.segments["data"][row])
     return float(path.segments["length"][row]), path.pool[at : at + 2 * len(path.axes)].copy()
-
-
-def _parts(block: Program) -> Iterator[Program]:
-    """Yield a block in parts of a bounded number of moves, without looking at all of its moves at once."""
-    if len(block.moves) <= _FIRST:
-        yield block
-        return
-    actions = list(block.actions)
-    for first in range(0, len(block.moves), _FIRST):
-        end = min(first + _FIRST, len(block.moves))
-        own = [a for a in actions if a.at < end or end == len(block.moves)]
-        actions = actions[len(own) :]
-        yield replace(block, moves=block.moves[first:end],
-                      actions=tuple(replace(a, at=a.at - first) for a in own))  # fmt: skip

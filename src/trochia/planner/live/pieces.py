@@ -21,20 +21,6 @@ def size_of(kind: int, axes: int) -> int:
     return {SegmentKind.LINE: 2 * axes, SegmentKind.ARC: 7 + 2 * axes, SegmentKind.CUBIC: 4 * axes}[SegmentKind(kind)]
 
 
-def rows_of(
-    segments: NDArray[Any], pool: NDArray[np.float64], first: int, end: int, axes: int
-) -> tuple[NDArray[Any], NDArray[np.float64]]:
-    """Return copies of the segments ``first`` up to ``end``, and a view of their coefficients as their pool."""
-    rows = segments[first:end].copy()
-    if not len(rows):
-        return rows, np.zeros(0)
-    last = int(rows["data"].argmax())
-    low = int(rows["data"].min())
-    high = int(rows["data"][last]) + size_of(int(rows["kind"][last]), axes)
-    rows["data"] -= np.uint64(low)
-    return rows, pool[low:high]
-
-
 def shifted(kind: int, c: NDArray[np.float64], axes: int, s: float) -> NDArray[np.float64]:
     """Return the coefficients of a segment as it goes on from ``s``, with s counted from there."""
     out, n = c.copy(), axes
@@ -71,7 +57,7 @@ def turned(kind: int, c: NDArray[np.float64], axes: int, length: float) -> NDArr
 def cut_head(
     rows: NDArray[Any], pool: NDArray[np.float64], axes: int, s: float
 ) -> tuple[NDArray[Any], NDArray[np.float64]]:
-    """Return a path (with a pool of its own) without the first ``s`` of its first segment."""
+    """Return a path without the first ``s`` of its first segment: the rows changed in place, a pool of its own."""
     if s <= 0.0:
         return rows, pool
     at, kind = int(rows["data"][0]), int(rows["kind"][0])

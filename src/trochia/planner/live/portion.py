@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trochia.kernels import path as kernel
+from trochia.planner.live.rows import copied
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -48,11 +49,12 @@ class Portion:
     def of(cls, road: Road, phases: NDArray[Any], *, backwards: bool = False) -> Portion:
         """Return phases (of which there is at least one), counted by a road's rows, with what they need of it."""
         first, end = int(phases["segment"][0]), int(phases["segment"][-1]) + 1
-        inside = slice(first - road.base, end - road.base)
-        phases = phases.copy()
+        phases = copied(phases)
         phases["segment"] -= np.uint32(first)
-        return cls(axes=road.axes, first=first, segments=road.segments[inside], pool=road.pool,
-                   lines=road.lines[inside], power=road.power[inside], phases=phases, backwards=backwards)  # fmt: skip
+        return cls(
+            axes=road.axes, first=first, segments=road.rows(first, end), pool=road.pool, lines=road.lines(first, end),
+            power=road.power(first, end), phases=phases, backwards=backwards,
+        )  # fmt: skip
 
     @property
     def begin(self) -> float:

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from trochia.kernels import path as kernel
 from trochia.kernels.layout import SEGMENT
-from trochia.planner.live.pieces import rows_of
+from trochia.planner.live.rows import put
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -23,16 +24,22 @@ if TYPE_CHECKING:
     from trochia.toolpath import Toolpath
 
 
+_ROOM = 3  #: times what is needed at once, that memory is taken for
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stretch:
-    """Some segments of a path, in order, each with its source line and the power of its move.
+    """Some segments of a path, in order, and the moves they belong to.
+
+    That of a path built piece by piece is gone when the next one is asked for.
 
     Attributes
     ----------
     segments, pool
-        As in a Toolpath; ``move`` counts from the program's start.
-    lines, power
-        Of each segment (k,).
+        As in a Toolpath (k,); coefficients stand in the pool in the order of their segments, ``data`` counts from
+        anywhere before the first.
+    moves, first_move
+        Rows of MOVE that the segments' ``move`` counts in, and the number of the first since the program's start.
     rests, seconds
         Segment of this stretch that motion rests before (r,), and how long [s] (r,); k: after the last.
     start
@@ -41,8 +48,8 @@ class Stretch:
 
     segments: NDArray[Any]
     pool: NDArray[np.float64]
-    lines: NDArray[np.uint32]
-    power: NDArray[np.float32]
+    moves: NDArray[Any]
+    first_move: int
     rests: NDArray[np.uint64]
     seconds: NDArray[np.float64]
     start: NDArray[np.float64]
@@ -50,10 +57,8 @@ class Stretch:
     @classmethod
     def of(cls, path: Toolpath, program: Program, rests: Rests) -> Stretch:
         """Return a whole path as one stretch."""
-        moves = path.segments["move"]
-        return cls(segments=path.segments, pool=path.pool, lines=program.moves["line"][moves],
-                   power=program.moves["power"][moves], rests=rests.segments, seconds=rests.seconds,
-                   start=path.start)  # fmt: skip
+        return cls(segments=path.segments, pool=path.pool, moves=program.moves, first_move=0,
+                   rests=rests.segments, seconds=rests.seconds, start=path.start)  # fmt: skip
 
 
 class Place(NamedTuple):
@@ -66,6 +71,9 @@ class Place(NamedTuple):
 class Road:
     """Rows ``base`` up to ``end`` of a path whose stretches are taken as they are needed.
 
+    They lie in memory with room behind them: what comes in is copied there once, what is dropped is only not looked at
+    any more, and views that were given out stay as they are.  When the room is used up, what is in hand moves.
+
     Attributes
     ----------
     axes
@@ -76,24 +84,61 @@ class Road:
         Number of the first row in hand.
     ended
         Whether the last row in hand is the program's last.
+    segments, pool
+        What is in hand, as in a Stretch; ``move`` counts from the program's start.
     """
 
     def __init__(self, axes: str, stretches: Iterator[Stretch]) -> None:
         self.axes, self.start = axes, np.zeros(len(axes))
         self.base, self.ended = 0, False
-        self.segments: NDArray[Any] = np.zeros(0, dtype=SEGMENT)
-        self.pool: NDArray[np.float64] = np.zeros(0)
-        self.lines: NDArray[np.uint32] = np.zeros(0, dtype=np.uint32)
-        self.power: NDArray[np.float32] = np.zeros(0, dtype=np.float32)
         self.rests: NDArray[np.int64] = np.zeros(0, dtype=np.int64)
         self.seconds: NDArray[np.float64] = np.zeros(0)
         self._source = stretches
         self._still = 0
+        self._moves: NDArray[Any] | None = None  # of a path that was there as a whole
+        self._first = self._end = self._pool_end = 0  # of what is in hand, in the memory it lies in
+        self._hold(np.zeros(0, dtype=SEGMENT), np.zeros(0))
+
+    @classmethod
+    def whole(cls, axes: str, stretch: Stretch) -> Road:
+        """Return the road of a path that is there already; nothing of it is copied."""
+        road = cls(axes, iter(()))
+        road._end, road._pool_end, road.start = len(stretch.segments), len(stretch.pool), stretch.start
+        road.rests, road.seconds = stretch.rests.astype(np.int64), stretch.seconds
+        road._moves = stretch.moves
+        road._hold(stretch.segments, stretch.pool)
+        return road
+
+    def _hold(self, segments: NDArray[Any], pool: NDArray[np.float64]) -> None:
+        self._segments, self._pool = segments, pool
+        room = len(segments) if self._moves is None else 0
+        self._lines, self._power = np.empty(room, dtype=np.uint32), np.empty(room, dtype=np.float32)
+        self._show()
+
+    def _show(self) -> None:
+        self.segments: NDArray[Any] = self._segments[self._first : self._end]
+        self.pool: NDArray[np.float64] = self._pool[: self._pool_end]
 
     @property
     def end(self) -> int:
         """Number of the row after the last in hand; a road on which nothing moves has none, but a line of no length."""
         return self.base + len(self.segments) - self._still
+
+    def lines(self, first: int, end: int) -> NDArray[np.uint32]:
+        """Return the source lines of the rows ``first`` up to ``end`` (k,)."""
+        if self._moves is not None:
+            return self._moves["line"][self.rows(first, end)["move"]]
+        return self._lines[self._first + first - self.base : self._first + end - self.base]
+
+    def power(self, first: int, end: int) -> NDArray[np.float32]:
+        """Return the power of the beam, or S of the spindle, of the rows ``first`` up to ``end`` (k,)."""
+        if self._moves is not None:
+            return self._moves["power"][self.rows(first, end)["move"]]
+        return self._power[self._first + first - self.base : self._first + end - self.base]
+
+    def rows(self, first: int, end: int) -> NDArray[Any]:
+        """Return the segments of the rows ``first`` up to ``end`` (k,)."""
+        return self.segments[first - self.base : end - self.base]
 
     def more(self) -> bool:
         """Take the next stretch; False when there is none."""
@@ -101,43 +146,52 @@ class Road:
         if stretch is None:
             self._end_here()
             return False
-        rows, end = stretch.segments, self.end
-        self.start = stretch.start if end == 0 else self.start
-        if len(self.segments):
-            rows = rows.copy()
-            rows["data"] += np.uint64(len(self.pool))
-            self.segments = np.concatenate([self.segments, rows])
-            self.pool = np.concatenate([self.pool, stretch.pool])
-            self.lines = np.concatenate([self.lines, stretch.lines])
-            self.power = np.concatenate([self.power, stretch.power])
-        else:
-            self.segments, self.pool, self.lines, self.power = rows, stretch.pool, stretch.lines, stretch.power
-        self.rests = np.concatenate([self.rests, stretch.rests.astype(np.int64) + end])
-        self.seconds = np.concatenate([self.seconds, stretch.seconds])
+        self.start = stretch.start if self.end == 0 else self.start
+        if len(stretch.rests):
+            self.rests = np.concatenate([self.rests, stretch.rests.astype(np.int64) + self.end])
+            self.seconds = np.concatenate([self.seconds, stretch.seconds])
+        count, size = len(stretch.segments), len(stretch.pool)
+        if not count:
+            return True
+        if self._end + count > len(self._segments) or self._pool_end + size > len(self._pool):
+            self._move(count, size)
+        self._pool[self._pool_end : self._pool_end + size] = stretch.pool
+        new = slice(self._end, self._end + count)
+        kernel.append(
+            stretch.segments, stretch.moves, (self._segments[new], self._lines[new], self._power[new]),
+            shift=self._pool_end - int(stretch.segments["data"][0]), first=stretch.first_move,
+        )  # fmt: skip
+        self._end, self._pool_end = self._end + count, self._pool_end + size
+        self._show()
         return True
+
+    def _move(self, count: int, size: int) -> None:
+        """Move to memory with room for so many more segments and coefficients, and the same again."""
+        held, low = len(self.segments), int(self.segments["data"][0]) if len(self.segments) else self._pool_end
+        segments, pool = self.segments, self.pool[low:]
+        lines, power = self.lines(self.base, self.base + held), self.power(self.base, self.base + held)
+        self._first, self._end, self._pool_end = 0, held, len(pool)
+        self._hold(np.empty(_ROOM * (held + count), dtype=SEGMENT), np.empty(_ROOM * (len(pool) + size)))
+        put(segments, self.segments)
+        self.segments["data"] -= np.uint64(low)
+        self.pool[:], self._lines[:held], self._power[:held] = pool, lines, power
 
     def _end_here(self) -> None:
         self.ended = True
         if not len(self.segments):
-            self._still = 1
-            self.segments = np.zeros(1, dtype=SEGMENT)
-            self.pool = np.concatenate([self.start, np.zeros(len(self.axes))])
-            self.lines, self.power = np.zeros(1, dtype=np.uint32), np.zeros(1, dtype=np.float32)
+            self._still, self._end = 1, 1
+            self._pool_end = 2 * len(self.axes)
+            self._hold(np.zeros(1, dtype=SEGMENT), np.concatenate([self.start, np.zeros(len(self.axes))]))
+            self._lines[:], self._power[:] = 0, 0.0
 
     def trim(self, row: int) -> None:
-        """Drop the rows before ``row``, once they are half of what is in hand."""
-        drop = row - self.base
-        if 2 * drop <= len(self.segments):
-            return
-        self.segments, pool = rows_of(self.segments, self.pool, drop, len(self.segments), len(self.axes))
-        self.pool = pool.copy()
-        self.lines, self.power = self.lines[drop:].copy(), self.power[drop:].copy()
-        kept = self.rests >= row
-        self.rests, self.seconds, self.base = self.rests[kept], self.seconds[kept], row
-
-    def slice(self, first: int, end: int) -> tuple[NDArray[Any], NDArray[np.float64]]:
-        """Return copies of rows ``first`` up to ``end``, and a view of their coefficients."""
-        return rows_of(self.segments, self.pool, first - self.base, end - self.base, len(self.axes))
+        """Drop the rows before ``row``."""
+        self._first += row - self.base
+        self.base = row
+        self._show()
+        if len(self.rests):
+            kept = self.rests >= row
+            self.rests, self.seconds = self.rests[kept], self.seconds[kept]
 
     def rests_between(self, first: int, end: int) -> tuple[NDArray[np.uint64], NDArray[np.float64]]:
         """Return the rests before rows ``first`` up to ``end``, counted from ``first``, and their times [s].

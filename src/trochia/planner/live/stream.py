@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 WINDOW = 300.0  #: how much a window adds, in worst stopping times: long ones cost less to join
-_ROWS = 8_192  #: segments it adds at least
+_ROWS = 16_384  #: segments it adds at least
 
 
 class StreamPlanner:

@@ -15,6 +15,7 @@ from trochia.kernels import path as kernel
 from trochia.kernels.layout import PHASE
 from trochia.planner.limits import Limits
 from trochia.planner.live.pieces import cut_head
+from trochia.planner.live.rows import copied, joined
 from trochia.planner.plan import PROFILES, profile_of
 from trochia.planner.rests import Rests
 from trochia.toolpath import Toolpath
@@ -74,11 +75,13 @@ class Rules:
 def plan_window(road: Road, rules: Rules, start: Place, end: int, speeds: Speeds) -> NDArray[Any]:
     """Return the phases (k,) from rest at ``start`` to rest before row ``end``: t from 0, segments by its rows."""
     axes = len(road.axes)
-    rows, pool = road.slice(start.row, end)
-    scale_feeds(rows, pool, rules.limits, speeds)
-    if rules.limits.segment_time > 0.0:
-        np.minimum(rows["speed_limit"], rows["length"] / rules.limits.segment_time, out=rows["speed_limit"])
-    rows, pool = cut_head(rows, pool, axes, start.s)
+    rows, pool = road.rows(start.row, end), road.pool[:]
+    if speeds != Speeds() or rules.limits.segment_time > 0.0 or start.s > 0.0:
+        rows = copied(rows)
+        scale_feeds(rows, pool, rules.limits, speeds)
+        if rules.limits.segment_time > 0.0:
+            np.minimum(rows["speed_limit"], rows["length"] / rules.limits.segment_time, out=rows["speed_limit"])
+        rows, pool = cut_head(rows, pool, axes, start.s)
     where, seconds = road.rests_between(start.row, end)
     if start.s > 0.0:
         ahead = where > 0
@@ -86,7 +89,7 @@ def plan_window(road: Road, rules: Rules, start: Place, end: int, speeds: Speeds
     path = Toolpath(axes=road.axes, start=np.zeros(axes), segments=rows, pool=pool)
     schedule: Schedule = rules.profile(path, rules.limits, Rests(segments=where, seconds=seconds, times={}))
     blocks = list(schedule.phases(_BLOCK))
-    phases = blocks[0] if len(blocks) == 1 else np.concatenate(blocks)
+    phases = blocks[0] if len(blocks) == 1 else joined(blocks)
     if start.s > 0.0:
         phases["s"][phases["segment"] == 0] += start.s
     phases["segment"] += np.uint32(start.row)
