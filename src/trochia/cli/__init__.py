@@ -20,6 +20,7 @@ COMMANDS = {
     "simulate": "Run a program on the digital twin: recording and report.",
     "run": "Run a program on a machine, under the live controller.",
     "replay": "Look at a recording, or hold a run against its plan or another run.",
+    "bundle": "Pack versions, machine file, journal and last recording for who can help.",
     "serve": "Serve a machine over HTTP and WebSocket, with a page that shows it and stops it.",
     "users": "Who may log in to a served machine.",
     "gateway": "Let senders of another protocol drive a machine: GRBL 1.1.",

@@ -101,6 +101,11 @@ def _find(name: str) -> tuple[str, str]:
                       or "A machine of your own is given by its path: ./mill.toml")  # fmt: skip
 
 
+def text_of(name_or_path: str | Path) -> tuple[str, str]:
+    """Return file name and text of a machine file, a path or a shipped name; ConfigError where it cannot be read."""
+    return _find(str(name_or_path))
+
+
 def read_text(path: Path) -> str:
     """Return the text of another controller's settings; bytes that are not UTF-8 are taken as Latin-1.
 
