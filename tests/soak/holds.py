@@ -271,11 +271,10 @@ def _distance(points: NDArray[np.float64], path: NDArray[np.float64]) -> float:
         return float(np.linalg.norm(points - path[0], axis=1).max())
     from scipy.spatial import cKDTree  # noqa: PLC0415 - late
 
-    _, near = cKDTree(path).query(points, k=1)
+    _, near = cKDTree(path).query(points, k=min(3, len(path)))
     best = np.full(len(points), np.inf)
-    for shift in (-1, 0):
-        i = np.clip(near + shift, 0, len(path) - 2)
-        a, d = path[i], path[i + 1] - path[i]
+    for first in np.hstack([near - 1, near]).clip(0, len(path) - 2).T:
+        a, d = path[first], path[first + 1] - path[first]
         u = np.clip(((points - a) * d).sum(1) / np.maximum((d * d).sum(1), 1e-30), 0.0, 1.0)
         best = np.minimum(best, np.linalg.norm(a + u[:, None] * d - points, axis=1))
     return float(best.max())
