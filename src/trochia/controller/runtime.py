@@ -10,6 +10,7 @@ import threading
 import time
 import traceback
 from concurrent.futures import Future
+from contextlib import suppress
 from dataclasses import dataclass
 from queue import Empty, SimpleQueue
 from typing import TYPE_CHECKING
@@ -189,6 +190,11 @@ class Runtime:
             except LinkError as error:
                 refused = True
                 self.controller.fault(Trouble(cause=Cause.LINK), str(error))
+        if refused:  # the stop and the dark beam do not wait for the next turn
+            stops, self.controller.pending = self.controller.pending, []
+            for order in stops:
+                with suppress(LinkError):
+                    self.backend.order(order, now)
 
     def _write(self, now: float, kind: str, data: dict[str, object]) -> None:
         if self._journal is None:
