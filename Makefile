@@ -6,6 +6,7 @@
 #   make bench   measure, as ratios against a reference in the same call      make soak    long seeded campaigns
 #   make golden  rewrite the golden files for review in the diff              make oracle  compare with rs274
 #   make docs    the documentation, into docs/_build                          make clean   remove what was built
+#   make images  compile the boards' images anew, for `trochia flash` (needs gcc-avr and avr-libc)
 
 PYTHON ?= python3
 VENV   := .venv
@@ -43,6 +44,10 @@ $(VENV)/.setup-test: $(VENV)/.setup packages-test.txt
 core: $(CORE)
 	flock .core.lock $(BIN)/python setup.py -q build_ext --inplace
 .PHONY: core
+
+images:
+	$(MAKE) -s -C firmware/avr images
+.PHONY: images
 
 run: setup
 	$(BIN)/trochia simulate programs/contour.ngc -m xy-table -o out/contour

@@ -51,6 +51,25 @@ def talk(chip_program, board_image, request):
     return begin
 
 
+@pytest.fixture
+def plug(chip_program, board_image, request, tmp_path):
+    """Plugs a board in: its image on the simulated chip, or a function that answers, on a pseudo-terminal."""
+
+    def begin(board=None, *, answer=None, baud=115_200, name="tty"):
+        pseudo = _load("pseudo_board")
+        if answer is None:
+            file = board if baud == 115_200 else f"{board}-{baud}"
+            mcu = importlib.import_module("trochia.backends.avr.wiring").BOARDS[board].mcu
+            answer = pseudo.LiveChip(chip_program, board_image(file), mcu)
+            request.addfinalizer(answer.chip.close)
+        made = pseudo.PseudoBoard(tmp_path / name, answer, baud=baud)
+        made.board = answer
+        request.addfinalizer(made.pull)
+        return made
+
+    return begin
+
+
 _compared = Counter[str]()  # programs compared with rs274 by all processes, see oracle/conftest.py
 
 

@@ -23,6 +23,8 @@ COMMANDS = {
     "bundle": "Pack versions, machine file, journal and last recording for who can help.",
     "serve": "Serve a machine over HTTP and WebSocket, with a page that shows it and stops it.",
     "users": "Who may log in to a served machine.",
+    "boards": "What is on the serial ports: our boards, GRBL boards, nothing.",
+    "flash": "Write Trochia's image to a board.",
     "gateway": "Let senders of another protocol drive a machine: GRBL 1.1.",
     "interpolate": "Compare the classic interpolators on a line or an arc.",
     "profile": "A stepper's velocity profile, step by step, and whether it will do.",
