@@ -107,11 +107,8 @@ def _experiment(machine_name: str, joint: str | None, plot: str | None, *, as_js
     if as_json:
         options.print_json(figures(found) | {"files": files})
         return
-    for estimate in (found.friction, found.train, found.gap):
-        if estimate is not None:
-            show(estimate)
-    if found.train is None:
-        click.echo(f"one stiff mass: inertia {found.plant.motor_inertia:.4g} kg·m²")
+    for estimate in found.estimates:
+        show(estimate)
     for file in files:
         click.echo(f"wrote {file}")
 
@@ -129,23 +126,20 @@ def run_experiment(asked: axis_options.AskedAxis, progress: Callable[[str], None
 
 def figures(found: Identified) -> dict[str, Any]:
     """Return what ``--json`` prints."""
-    estimates = [e for e in (found.friction, found.train, found.gap) if e is not None]
-    numbers = {name: number for e in estimates for name, number in e.numbers.items()}
-    inertia = {} if found.train is not None else {"motor_inertia": found.plant.motor_inertia}
+    numbers = {name: number for e in found.estimates for name, number in e.numbers.items()}
     return {
         "model": "two-mass" if found.train is not None else "one-mass",
-        "parameters": inertia | {name: number.value for name, number in numbers.items()},
+        "parameters": {name: number.value for name, number in numbers.items()},
         "uncertainty": {n: number.sigma if number.sigma == number.sigma else None for n, number in numbers.items()},
         "units": {name: number.unit for name, number in numbers.items()},
-        "metrics": {e.model: {"rms": e.rms, "fit": e.fit, "samples": e.samples} for e in estimates}
+        "metrics": {e.model: {"rms": e.rms, "fit": e.fit, "samples": e.samples} for e in found.estimates}
         | {"coherence_median": float(sorted(found.response.coherence)[len(found.response.coherence) // 2]),
            "distortion": found.response.distortion},
     }  # fmt: skip
 
 
 def _rows(found: Identified) -> list[tuple[str, str]]:
-    estimates = [e for e in (found.friction, found.train, found.gap) if e is not None]
-    return [(name.replace("_", " "), str(number)) for e in estimates for name, number in e.numbers.items()]
+    return [(name.replace("_", " "), str(number)) for e in found.estimates for name, number in e.numbers.items()]
 
 
 def _draw(found: Identified, title: str, form: str) -> bytes:

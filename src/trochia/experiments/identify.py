@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from trochia.analysis.identification.backlash import gap_by_reversal, with_gap
+from trochia.analysis.identification.one_mass import one_mass
 from trochia.analysis.identification.two_mass import plant_of, two_mass
 from trochia.errors import RecordingError
 from trochia.experiments.motion import feel, out_and_back, soft_loop, steady_speeds
@@ -37,8 +38,8 @@ class Identified:
 
     Attributes
     ----------
-    friction, train, gap
-        Estimates; ``train`` and ``gap`` are None for one stiff mass.
+    friction, train, gap, body
+        Estimates; ``train`` and ``gap`` are None for one stiff mass, ``body`` for two.
     response
         Position by torque.
     plant
@@ -53,6 +54,12 @@ class Identified:
     response: FrequencyResponse
     plant: ServoPlant
     loop: Loop
+    body: Estimate | None = None
+
+    @property
+    def estimates(self) -> tuple[Estimate, ...]:
+        """All that there are."""
+        return tuple(e for e in (self.friction, self.body, self.train, self.gap) if e is not None)
 
 
 def identify(
@@ -94,8 +101,9 @@ def identify(
     try:
         train = two_mass(response, viscous=friction["viscous"])
     except RecordingError:
-        return Identified(friction=friction, train=None, gap=None, response=response, loop=loop,
-                          plant=_one_mass(axis, moved["inertia"], friction))  # fmt: skip
+        body = one_mass(response, inertia=moved["inertia"], viscous=max(friction["viscous"], 0.0))
+        return Identified(friction=friction, train=None, gap=None, body=body, response=response, loop=loop,
+                          plant=_one_mass(axis, body, friction))  # fmt: skip
     progress("frequency response, around its notch and peak")
     excitation = through_train(axis, train, _HELD * (level + 0.5 * friction["viscous"] * cruise), cruise)
     response = by_multisine(axis, loop, bounds, excitation)
@@ -111,18 +119,18 @@ def identify(
     return Identified(friction=friction, train=train, gap=gap, response=response, plant=plant, loop=loop)
 
 
-def _one_mass(axis: AxisUnderTest, inertia: float, friction: Estimate) -> ServoPlant:
+def _one_mass(axis: AxisUnderTest, body: Estimate, friction: Estimate) -> ServoPlant:
     dry = Friction(coulomb=max(friction["coulomb"], 0.0), viscous=max(friction["viscous"], 0.0),
                    offset=friction["offset"])  # fmt: skip
-    return ServoPlant(amplifier=Amplifier(), torque_constant=axis.torque, motor_inertia=inertia, counts=axis.counts,
-                      motor_friction=dry)  # fmt: skip
+    return ServoPlant(amplifier=Amplifier(lag=body["lag"]), torque_constant=axis.torque, counts=axis.counts,
+                      motor_inertia=body["motor_inertia"], motor_friction=dry)  # fmt: skip
 
 
 def _two_masses(axis: AxisUnderTest, train: Estimate, friction: Estimate) -> ServoPlant:
     model = plant_of([train[name] for name in ("motor_inertia", "load_inertia", "stiffness", "damping", "load_share")],
                      friction["viscous"])  # fmt: skip
     return ServoPlant(
-        amplifier=Amplifier(), torque_constant=axis.torque, motor_inertia=model.motor_inertia,
+        amplifier=Amplifier(lag=train["lag"]), torque_constant=axis.torque, motor_inertia=model.motor_inertia,
         load_inertia=model.load_inertia, stiffness=model.stiffness, damping=model.damping, counts=axis.counts,
         motor_friction=Friction(viscous=model.motor_friction.viscous, offset=friction["offset"]),
         load_friction=model.load_friction,

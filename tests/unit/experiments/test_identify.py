@@ -38,10 +38,13 @@ def test_a_drawn_axis_is_found(axes: list[ServoPlant]) -> None:
 
 
 def test_one_stiff_mass_is_found_as_one(axes: list[ServoPlant]) -> None:
-    truth = replace(axes[0], stiffness=None, damping=0.0, gap=0.0)
+    lagging = replace(axes[0].amplifier, lag=4e-4)
+    truth = replace(axes[0], stiffness=None, damping=0.0, gap=0.0, amplifier=lagging)
     found = identify(TwinAxis(truth, PERIOD), BOUNDS, speed=30.0, reach=2.0)
     assert found.train is None
+    assert found.body is not None
     assert found.plant.motor_inertia == pytest.approx(truth.motor_inertia + truth.load_inertia, rel=0.02)
+    assert found.plant.amplifier.lag == pytest.approx(4e-4, rel=0.1)
 
 
 @pytest.fixture(scope="module")

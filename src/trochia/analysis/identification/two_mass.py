@@ -2,8 +2,8 @@
 
     y / u = (Jl s² + (d + b2) s + k) / ((Jm s² + (d + b1) s + k)(Jl s² + (d + b2) s + k) - (d s + k)²)
 
-as it is seen by a sampled loop (the torque held over each tick).  Symbols: Jm, Jl inertias of motor and load, k
-stiffness, d damping, b1, b2 viscous friction of motor and load.  The notch of y / u is at sqrt(k / Jl), its peak at
+as it is seen by a sampled loop (the torque held over each tick), behind the lag of the current loop, 1 / (lag s + 1).
+Symbols: Jm, Jl inertias of motor and load, k stiffness, d damping, b1, b2 viscous friction of motor and load.  The notch of y / u is at sqrt(k / Jl), its peak at
 sqrt(k (1/Jm + 1/Jl)); both start the fit.
 """
 
@@ -30,8 +30,9 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 FEWEST = 12  #: lines for a fit
-_TRUSTED = 0.8  # coherence from which on a line is used
-_FLOOR = 2e-3  # relative error below which no line is trusted
+MOST_LAG = 20.0  #: of the torque behind its command [ticks]
+TRUSTED = 0.8  #: coherence from which on a line is used
+FLOOR = 2e-3  #: relative error below which no line is trusted
 NAMES = (("motor_inertia", "kg·m²"), ("load_inertia", "kg·m²"), ("stiffness", "N·m/rad"), ("damping", "N·m·s/rad"))
 
 
@@ -42,6 +43,15 @@ def plant_of(parameters: Sequence[float], viscous: float, lag: float = 0.0) -> S
         amplifier=Amplifier(lag=lag), motor_inertia=jm, load_inertia=jl, stiffness=k, damping=d,
         motor_friction=Friction(viscous=viscous * (1.0 - share)), load_friction=Friction(viscous=viscous * share),
     )  # fmt: skip
+
+
+def distance(model: NDArray[np.complex128], measured: NDArray[np.complex128], weight: Array) -> Array:
+    """Return what a fit makes small (2 lines,): logarithm of size, and phase, of model over measured.
+
+    In logarithms a ratio of 2 and of 1/2 count alike, and notches are not drowned by peaks.
+    """
+    off = model / measured
+    return np.concatenate([np.log(np.abs(off)) * weight, np.angle(off) * weight])
 
 
 def peaks(measured: FrequencyResponse) -> tuple[float, float]:
@@ -73,8 +83,8 @@ def coupling_response(found: Estimate, frequency: Array) -> NDArray[np.complex12
     return np.asarray(train * jl * s * s / ((jm * s * s + train) * (jl * s * s + train) - train * train), np.complex128)
 
 
-def two_mass(measured: FrequencyResponse, *, viscous: float, lag: float = 0.0) -> Estimate:
-    """Return inertias, stiffness, damping, and the notch and peak they give.
+def two_mass(measured: FrequencyResponse, *, viscous: float) -> Estimate:
+    """Return inertias, stiffness, damping, the lag of the torque behind the command, and the notch and peak they give.
 
     Parameters
     ----------
@@ -82,8 +92,6 @@ def two_mass(measured: FrequencyResponse, *, viscous: float, lag: float = 0.0) -
         Position of the motor by its torque.
     viscous
         Friction of both together, as steady speeds tell it [N·m·s/rad]; the response fits its share of each.
-    lag
-        Of the torque behind the command [s].
 
     Raises
     ------
@@ -92,28 +100,26 @@ def two_mass(measured: FrequencyResponse, *, viscous: float, lag: float = 0.0) -
     """
     from scipy.optimize import least_squares  # noqa: PLC0415 - scipy is slow to import
 
-    used = measured.trusted(_TRUSTED)
+    used = measured.trusted(TRUSTED)
     if len(used.frequency) < FEWEST:
         raise RecordingError(f"only {len(used.frequency)} lines are coherent; at least {FEWEST} are needed",
                              hint="Excite more strongly, or measure more periods.")  # fmt: skip
     notch, peak = peaks(used)
-    weight = 1.0 / np.maximum(used.relative_sigma, _FLOOR)
+    weight = 1.0 / np.maximum(used.relative_sigma, FLOOR)
 
     def left(logarithms: Array) -> Array:
-        *logs, share = logarithms
-        model = plant_response(plant_of([*np.exp(logs), share], viscous, lag), used.frequency, used.period)
-        # in logarithms: a ratio of 2 and of 1/2 count alike, and notches are not drowned by peaks
-        off = model / used.value
-        return np.concatenate([np.log(np.abs(off)) * weight, np.angle(off) * weight])
+        *logs, share, ticks = logarithms
+        plant = plant_of([*np.exp(logs), share], viscous, ticks * used.period)
+        return distance(plant_response(plant, used.frequency, used.period), used.value, weight)
 
     starts = _start(used, notch, peak)
     fits: list[Any] = [
         least_squares(
             left,
-            [*start, 0.5],
-            x_scale=[0.1, 0.1, 0.1, 0.5, 0.3],
+            [*start, 0.5, 0.1],
+            x_scale=[0.1, 0.1, 0.1, 0.5, 0.3, 0.1],
             loss="soft_l1",
-            bounds=([v - 3.0 for v in start] + [0.0], [v + 3.0 for v in start] + [1.0]),
+            bounds=([v - 3.0 for v in start] + [0.0, 0.0], [v + 3.0 for v in start] + [1.0, MOST_LAG]),
         )
         for start in starts
     ]
@@ -135,7 +141,7 @@ def _start(used: FrequencyResponse, notch: float, peak: float) -> list[list[floa
 
 def _estimate(x: Array, jacobian: Array, left: Array, used: FrequencyResponse, viscous: float) -> Estimate:
     """Return the estimate; uncertainty is that of what the model leaves over."""
-    *logs, share = x
+    *logs, share, ticks = x
     variance = max(float(left @ left) / max(len(left) - len(x), 1), 0.0)
     covariance = np.linalg.pinv(jacobian.T @ jacobian) * variance
     sigma = np.sqrt(np.diag(covariance))
@@ -144,10 +150,13 @@ def _estimate(x: Array, jacobian: Array, left: Array, used: FrequencyResponse, v
                for (name, unit), v, s in zip(NAMES, values, sigma[:4], strict=True)}  # fmt: skip
     jm, jl, k, _ = values
     numbers["load_share"] = Number(float(share), float(sigma[4]))
+    numbers["lag"] = Number(float(ticks) * used.period, float(sigma[5]) * used.period, "s")
     for name, w in (("notch", math.sqrt(k / jl)), ("peak", math.sqrt(k / jl + k / jm))):
         numbers[name] = Number(w / (2 * math.pi), w / (4 * math.pi) * float(np.hypot(sigma[2], sigma[1])), "Hz")
     numbers["viscous"] = Number(viscous, math.nan, "N·m·s/rad")
-    model = plant_response(plant_of([*values, float(share)], viscous), used.frequency, used.period)
+    model = plant_response(
+        plant_of([*values, float(share)], viscous, numbers["lag"].value), used.frequency, used.period
+    )
     off = np.abs(model / used.value - 1.0)
     return Estimate(model="two-mass", numbers=numbers, rms=float(np.sqrt(np.mean(off**2))),
                     fit=float(1.0 - np.mean(off**2)), samples=len(used.frequency))  # fmt: skip

@@ -6,9 +6,12 @@ import numpy as np
 import pytest
 
 from trochia.analysis.identification.backlash import gap_by_switch
+from trochia.analysis.identification.one_mass import one_mass
 from trochia.analysis.identification.response import FrequencyResponse, of_periods, of_spectra
 from trochia.analysis.identification.two_mass import peaks, plant_of, two_mass
 from trochia.errors import RecordingError
+from trochia.machine.friction import Friction
+from trochia.machine.servo_plant import Amplifier, ServoPlant
 from trochia.servo.sampled import plant_response
 
 PERIOD, SAMPLES = 1e-3, 2000
@@ -76,9 +79,9 @@ def test_recordings_with_gaps_are_named(u: np.ndarray, y: np.ndarray, what: str)
         of_periods(u, y, LINES, SAMPLES, PERIOD)
 
 
-def measured(noise: float) -> FrequencyResponse:
+def measured(noise: float, lag: float = 0.0) -> FrequencyResponse:
     rng = np.random.default_rng(11)
-    exact = plant_response(plant_of([*TRUTH.values(), SHARE], VISCOUS), FREQUENCY, PERIOD)
+    exact = plant_response(plant_of([*TRUTH.values(), SHARE], VISCOUS, lag), FREQUENCY, PERIOD)
     dirt = noise * (rng.normal(size=len(exact)) + 1j * rng.normal(size=len(exact))) / np.sqrt(2.0)
     return FrequencyResponse(frequency=FREQUENCY, value=exact * (1.0 + dirt), period=PERIOD,
                              coherence=np.full(len(exact), 1.0 / (1.0 + noise**2)))  # fmt: skip
@@ -91,6 +94,27 @@ def test_two_masses_are_found_within_the_uncertainty_told() -> None:
         assert found.numbers[name].sigma < 0.05 * value, name
     assert found["notch"] == pytest.approx(np.sqrt(12.0 / 2e-4) / (2 * np.pi), rel=0.01)
     assert found["peak"] == pytest.approx(np.sqrt(12.0 / 2e-4 + 12.0 / 1e-4) / (2 * np.pi), rel=0.01)
+
+
+@pytest.mark.parametrize("lag", [2e-4, 2e-3])
+def test_the_lag_of_the_torque_is_not_taken_for_mechanics(lag: float) -> None:
+    found = two_mass(measured(0.01, lag), viscous=VISCOUS)
+    assert found["lag"] == pytest.approx(lag, abs=4.0 * found.numbers["lag"].sigma)
+    assert found.numbers["lag"].sigma < 2e-5
+    for name, value in TRUTH.items():
+        assert abs(found[name] - value) < 4.0 * found.numbers[name].sigma, name
+
+
+def test_one_mass_with_its_lag() -> None:
+    plant = ServoPlant(amplifier=Amplifier(lag=3e-4), motor_inertia=7e-5, motor_friction=Friction(viscous=2e-4))
+    rng = np.random.default_rng(4)
+    dirt = 0.02 * (rng.normal(size=len(FREQUENCY)) + 1j * rng.normal(size=len(FREQUENCY)))
+    response = FrequencyResponse(frequency=FREQUENCY, value=plant_response(plant, FREQUENCY, PERIOD) * (1.0 + dirt),
+                                 coherence=np.full(len(FREQUENCY), 0.999), period=PERIOD)  # fmt: skip
+    found = one_mass(response, inertia=1e-4, viscous=2e-4)
+    for name, value in (("motor_inertia", 7e-5), ("lag", 3e-4)):
+        assert abs(found[name] - value) < 4.0 * found.numbers[name].sigma, name
+        assert found.numbers[name].sigma < 0.1 * value, name
 
 
 def test_notch_and_peak_stand_where_they_are() -> None:
