@@ -3,8 +3,8 @@
     y / u = (Jl s² + (d + b2) s + k) / ((Jm s² + (d + b1) s + k)(Jl s² + (d + b2) s + k) - (d s + k)²)
 
 as it is seen by a sampled loop (the torque held over each tick), behind the lag of the current loop, 1 / (lag s + 1).
-Symbols: Jm, Jl inertias of motor and load, k stiffness, d damping, b1, b2 viscous friction of motor and load.  The notch of y / u is at sqrt(k / Jl), its peak at
-sqrt(k (1/Jm + 1/Jl)); both start the fit.
+Symbols: Jm, Jl inertias of motor and load, k stiffness, d damping, b1, b2 viscous friction of motor and load.  The
+notch of y / u is at sqrt(k / Jl), its peak at sqrt(k (1/Jm + 1/Jl)); both start the fit.
 """
 
 from __future__ import annotations
