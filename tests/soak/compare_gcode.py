@@ -89,7 +89,7 @@ def difference(text: bytes, work: WorkState, files: dict[str, str]) -> tuple[str
     run = ORACLE["ours"](text, fast=True, work=work)
     if judge is None or run.why.startswith("more than"):
         return None  # endless, or too long to ask
-    kind = _kind(judge, run)
+    kind = kind_of(judge, run)
     if kind is None or _known(judge, run):
         return None
     return (kind, f"reference: {judge.rejected!r}, {judge.why!r}\nours: {run.why}")
@@ -112,7 +112,8 @@ def _known(judge: Any, run: Any) -> bool:
     return "(abort" in judge.why.lower() or judge.why.startswith(" ") or any(what in ours for what in _STRICTER)
 
 
-def _kind(judge: Any, run: Any) -> str | None:
+def kind_of(judge: Any, run: Any) -> str | None:
+    """Return in what kind of way two runs differ; None where they agree."""
     why = re.sub(r"-?\d+(\.\d+)?", "#", judge.why) if judge.rejected is not None else "accepts"
     mine = re.sub(r"^[^ ]* |-?\d+(\.\d+)?", "#", run.why.split("\n")[0]) if run.rejected is not None else "accepts"
     if (judge.rejected is None) != (run.rejected is None):

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 _MOST_LOST = 40  # segments that may vanish in one corner
 _MOST_GONE = 6.0  # distances that they may be long in all
+_SLACK = 1e-6  # of the distance
+_TOO_NARROW = "a corner of it is too narrow for that distance"
 
 
 def parallel(contour: Sequence[Segment], distance: float, *, least: float = 0.0) -> list[Segment]:
@@ -37,9 +39,30 @@ def parallel(contour: Sequence[Segment], distance: float, *, least: float = 0.0)
     while at < len(moved):
         joined = _join(made, moved, at, _MOST_GONE * abs(distance))
         if joined is None:
-            raise ValueError("a corner of it is too narrow for that distance")
+            raise ValueError(_TOO_NARROW)
+        if len(joined[0]) == 1:
+            joined = [_begun(joined[0][0], moved[0])], joined[1]
         made, at = joined
-    return [segment for segment in made if not segment.is_point]
+    made = [segment for segment in made if not segment.is_point]
+    if _too_near(made, contour, abs(distance)):
+        raise ValueError(_TOO_NARROW)
+    return made
+
+
+def _begun(segment: Segment, first: Segment) -> Segment:
+    """Return what is left of a segment where all before it has vanished: from where it meets the first one, led on."""
+    held = [point for point in lines_meet(first, segment) if segment.holds(point)]
+    return replace(segment, start=min(held, key=segment.way_to)) if held else segment
+
+
+def _too_near(made: Sequence[Segment], contour: Sequence[Segment], distance: float) -> bool:
+    """Return whether a joint lies nearer to the contour than the distance, as where a contour crosses itself."""
+    for point in [*(segment.start for segment in made), *(segment.end for segment in made[-1:])]:
+        for one in contour:
+            low, high = sorted((one.start[0], one.end[0]))
+            if low - distance < point[0] < high + distance and one.distance(point) < distance * (1.0 - _SLACK):
+                return True
+    return False
 
 
 def _moved(contour: Sequence[Segment], distance: float, least: float) -> list[Segment]:
@@ -63,6 +86,8 @@ def _corner(segment: Segment, after: Segment, distance: float) -> Segment | None
     """Return the arc round the corner between two segments; None where it points to the other side."""
     before, behind = segment.tangent(segment.end), after.tangent(after.start)
     bend = cross(before, behind)
+    if abs(bend) <= NEAR and before[0] * behind[0] + before[1] * behind[1] < 0.0:
+        bend = -distance  # it turns back on itself: round its tip
     if bend * distance >= -NEAR * abs(distance):
         return None
     corner = segment.end

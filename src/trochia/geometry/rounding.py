@@ -11,6 +11,8 @@ from math import hypot
 
 from trochia.geometry.segments import NEAR, Segment, Vector, cross, lines_meet
 
+LEAST = 1e-3  #: between the points where the arc would touch; below, the corner stays, as in the reference
+
 
 def rounded(before: Segment, after: Segment, radius: float, *, straight: bool) -> tuple[Segment, Segment, Segment]:
     """Return the two segments with what rounds their corner between them.
@@ -31,6 +33,8 @@ def rounded(before: Segment, after: Segment, radius: float, *, straight: bool) -
     for centre in sorted(centres, key=lambda centre: hypot(centre[0] - before.end[0], centre[1] - before.end[1])):
         first, second = _foot(before, centre), _foot(after, centre)
         if before.holds(first) and after.holds(second):
+            if hypot(second[0] - first[0], second[1] - first[1]) <= LEAST:
+                return before, Segment(start=before.end, end=before.end), after
             between = Segment(start=first, end=second)
             if not straight:
                 between = replace(between, centre=centre, sense=side)

@@ -73,6 +73,15 @@ class Segment:
         angle = self.turned(point)
         return angle <= self.turned(self.end) + slack or angle >= tau - slack
 
+    def distance(self, point: Vector) -> float:
+        """Return how far a point lies from it."""
+        ends = min(hypot(point[0] - end[0], point[1] - end[1]) for end in (self.start, self.end))
+        if self.centre is not None:
+            aside = abs(hypot(point[0] - self.centre[0], point[1] - self.centre[1]) - self.radius)
+            return aside if self.holds(point) else ends
+        tangent = self.tangent(self.start)
+        return abs(cross(tangent, (point[0] - self.start[0], point[1] - self.start[1]))) if self.holds(point) else ends
+
     def parallel(self, distance: float) -> Segment | None:
         """Return the same at a distance to its left; None where an arc shrinks to nothing."""
         if self.centre is None:

@@ -63,9 +63,56 @@ def test_a_groove_is_passed_over():
     assert over[1].end == (pytest.approx(1.5), pytest.approx(sqrt(16 - 1.5**2)))
 
 
-def test_a_way_there_and_back_has_no_parallel():
+def test_a_way_there_and_back_is_gone_round_its_tip():
+    there, round_it, back = parallel([UP, Segment(start=UP.end, end=UP.start)], 1.0)
+    assert round_it.centre == UP.end
+    assert round_it.sense == -1
+    assert there.end == round_it.start
+    assert (there.start[0], back.end[0]) == (UP.start[0] - 1.0, UP.start[0] + 1.0)
+
+
+def test_a_contour_that_crosses_itself_has_no_parallel():
+    points = [(0.0, 0.0), (0.0, 10.0), (0.0, 3.0), (-5.0, 3.0)]
     with pytest.raises(ValueError, match="narrow"):
-        parallel([UP, Segment(start=UP.end, end=UP.start)], 1.0)
+        parallel([Segment(start=one, end=other) for one, other in pairwise(points)], 1.0)
+
+
+def test_a_parallel_begins_where_its_vanished_first_segment_would_meet_it():
+    points = [(0.0, 0.0), (0.0, 0.1), (-10.0, 0.1)]
+    (left,) = parallel([Segment(start=one, end=other) for one, other in pairwise(points)], 0.3)
+    assert left.start == pytest.approx((-0.3, -0.2))
+    assert left.end == pytest.approx((-10.0, -0.2))
+
+
+@given(
+    bends=st.lists(st.tuples(st.floats(0.5, 5.0), st.floats(-4.0, 4.0)), min_size=2, max_size=6),
+    distance=st.floats(-0.6, 0.6).filter(lambda size: abs(size) > 0.01),
+)
+def test_a_parallel_is_nowhere_nearer_than_its_distance(bends, distance):
+    points = [(0.0, 0.0)]
+    for along, across in bends:
+        points.append((points[-1][0] + along, points[-1][1] + across))
+    contour = [Segment(start=one, end=other) for one, other in pairwise(points)]
+    try:
+        made = parallel(contour, distance)
+    except ValueError:
+        return
+    for segment in made:
+        for point in (segment.start, segment.end):
+            assert min(one.distance(point) for one in contour) == pytest.approx(abs(distance), rel=1e-5)
+
+
+def test_the_distance_of_points_from_lines_and_arcs():
+    line, arc = Segment(start=(0, 0), end=(10, 0)), Segment(start=(5, 0), end=(0, 5), centre=(0, 0), sense=1)
+    assert [line.distance(point) for point in ((4, -3), (13, 4), (-3, 4))] == [3, 5, 5]
+    assert [arc.distance(point) for point in ((3, 4), (6, 8), (5, -2))] == pytest.approx([0, 5, 2])
+
+
+def test_a_fillet_of_no_length_is_left_out():
+    before, after = Segment(start=(-5, 0), end=(0, 0)), Segment(start=(0, 0), end=(5, 0.01))
+    one, between, other = rounded(before, after, 0.4, straight=False)
+    assert (one, other) == (before, after)
+    assert between.is_point
 
 
 @given(angle=st.floats(0.2, 2.9), radius=st.floats(0.1, 2.0))

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from math import hypot, sqrt
 from typing import TYPE_CHECKING
 
-from trochia.errors import ModalConflictError, ParseError
+from trochia.errors import ModalConflictError, ParseError, ProgramError
 from trochia.geometry.rounding import rounded
 from trochia.geometry.segments import NEAR, Segment
 from trochia.languages.gcode.groups.arcs import SHORT_RADIUS, check_radii
@@ -42,6 +42,8 @@ class Profile:
         The first one leads from the start to the first point.
     depth
         Calls in progress while its subroutine runs; 0: it has not been called yet.
+    fault
+        Why it cannot be drawn on; told where its subroutine ends, as in the reference.
     """
 
     block: Block
@@ -50,6 +52,7 @@ class Profile:
     start: Vector
     segments: list[Segment] = field(default_factory=list[Segment])
     depth: int = 0
+    fault: ProgramError | None = None
     _corner: tuple[float, bool, Place] | None = None
 
     def take(self, block: Block, state: State) -> None:
@@ -60,12 +63,22 @@ class Profile:
         ModalConflictError
             For a code that would use the axis words in another way.
         ParseError
-            For an arc that cannot be, or a corner that cannot be rounded.
+            For an arc that has neither centre nor radius.
         """
         _refuse_others(block)
         if block.motion is None or not (block.axes or block.motion.name in ("G2", "G3")):
             return
         sense = _DRAWS[block.motion.name]
+        if sense and not block.values.keys() & {"r", "i", "k"}:
+            raise block.fault(ParseError, "an arc needs its centre or its radius", block.mover,
+                              hint="Write I and K, or R.")  # fmt: skip
+        if self.fault is None:
+            try:
+                self._draw(block, state, sense)
+            except ProgramError as fault:
+                self.fault = fault
+
+    def _draw(self, block: Block, state: State, sense: int) -> None:
         here = state.position[_Z], state.position[_X]
         end = _end_of(block, state)
         state.position[_Z], state.position[_X] = end
@@ -126,9 +139,6 @@ def _centre_of(block: Block, state: State, start: Vector, end: Vector, sense: in
     values = block.values
     if "r" in values:
         return _by_radius(block, state, start, end, sense)
-    if "i" not in values and "k" not in values:
-        raise block.fault(ParseError, "an arc needs its centre or its radius", block.mover,
-                          hint="Write I and K, or R.")  # fmt: skip
     if state.arc_absolute:
         centre = values.get("k", start[0]), values.get("i", start[1])
     else:

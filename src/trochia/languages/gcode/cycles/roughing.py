@@ -20,6 +20,10 @@ if TYPE_CHECKING:
 
     from trochia.geometry.segments import Vector
 
+_NEAR_START, _NEAR_END = (
+    1e-3,
+    1e-4,
+)  # an arc whose highest point lies so near to an end has it there, as in the reference
 MOST_LEVELS = 10_000  #: of one cycle, where the reference has no bound
 
 
@@ -128,8 +132,8 @@ def _split_at_top(segment: Segment) -> list[Segment]:
     if segment.centre is None:
         return [segment]
     top = segment.centre[0], segment.centre[1] + segment.radius
-    ends = (segment.start, segment.end)
-    if not segment.holds(top) or any(abs(end[0] - top[0]) <= NEAR and end[1] > segment.centre[1] for end in ends):
+    ends = ((segment.start, _NEAR_START), (segment.end, _NEAR_END))
+    if not segment.holds(top) or any(abs(end[0] - top[0]) <= near and end[1] > segment.centre[1] for end, near in ends):
         return [segment]
     return [replace(segment, end=top), replace(segment, start=top)]
 

@@ -10,6 +10,7 @@ lies behind the first pocket, G7x.2 clears only that.  G70 finishes along the pr
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import hypot
 from typing import TYPE_CHECKING
 
 from trochia.errors import ModalConflictError, ParseError
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
 
 _X, _Z = 0, 2
 _MOST_PASSES = 10_000  # of G70
+_NEAR_END = 1e-3  # of an arc: where it turns back so near to an end, it does not, as in the reference [program units]
 _LEAST_ARC = 0.01  # along the passes, of arcs round corners [program units], in the reference
 
 
@@ -87,12 +89,17 @@ def finish(profile: Profile, there: Block, state: State, sink: Sink) -> None:
     ProgramError
         For a profile that the cycle cannot follow; moves before that have been sent.
     """
+    assert profile.block.motion is not None
+    name = f"{profile.block.motion.name} of line {profile.block.place.line}"
+    if (fault := profile.fault) is not None:
+        assert fault.source is not None
+        column = f", column {fault.source.column}" if fault.source.column else ""
+        where = f"line {fault.source.line}{column} of its profile"
+        raise there.fault(type(fault), f"{name}: {where}: {fault.message}", hint=fault.hint)
     try:
         moves = _moves(profile)
     except ValueError as error:
-        assert profile.block.motion is not None
         hint = _HINTS.get(str(error), "Write a smaller D (or E), or a wider corner.")
-        name = f"{profile.block.motion.name} of line {profile.block.place.line}"
         raise there.fault(ModalConflictError, f"{name}: {error}", hint=hint) from None
     for move in moves:
         _send(move, there, state, sink)
@@ -100,7 +107,9 @@ def finish(profile: Profile, there: Block, state: State, sink: Sink) -> None:
 
 _MONOTONIC = "the profile turns back along the direction of the passes"
 _TOO_MANY = f"more than {MOST_LEVELS} passes"
+_NO_DEPTH = "its I must be above 0"
 _HINTS = {
+    _NO_DEPTH: "I is the depth of a pass.",
     _MONOTONIC: "G71 needs a Z that always rises or falls along the profile, G72 such an X, G70 one of them.",
     _TOO_MANY: "Write a greater I.",
 }
@@ -111,6 +120,8 @@ def _moves(profile: Profile) -> list[Move]:
     assert profile.block.motion is not None
     name, values = profile.block.motion.name, profile.block.values
     contour = profile.segments[1:]
+    if name != "G70" and values.get("i", 1.0) <= 0:
+        raise ValueError(_NO_DEPTH)
     if not contour:
         return []
     frame = _frame_of(contour, name)
@@ -165,8 +176,7 @@ def _leads_ahead(segment: Segment) -> bool:
 
 
 def _is_end(segment: Segment, point: Vector) -> bool:
-    near = 1e-6 * segment.radius
-    return any(abs(end[0] - point[0]) + abs(end[1] - point[1]) <= near for end in (segment.start, segment.end))
+    return any(hypot(end[0] - point[0], end[1] - point[1]) <= _NEAR_END for end in (segment.start, segment.end))
 
 
 def _side(drawn: Sequence[Segment], start: Vector) -> int:
@@ -248,8 +258,6 @@ def _check(block: Block, state: State) -> None:
     if "stopping" in block.groups:
         raise block.fault(ModalConflictError, f"{block.groups['stopping'].name} cannot stand beside {name}",
                           block.groups["stopping"].name, hint="Use two lines.")  # fmt: skip
-    if block.values.get("i", 1.0) <= 0:
-        raise block.fault(ParseError, f"I of {name} must be above 0", "i", hint="I is the depth of a pass.")
 
 
 def _plane_of(block: Block, state: State) -> Plane:
