@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     Switch = Callable[[NDArray[np.float64]], bool]
 
 
+SHALLOW, DEEP = 0.2, 0.6  #: motion it holds [s]: by a virtual clock; by a real one, for a host kept from its work
 AT_REST = 1000  #: servo periods at a time while servos settle
 
 
@@ -62,7 +63,7 @@ class LiveTwin:
         *,
         position: NDArray[np.float64] | None = None,
         switches: Mapping[str, Switch] | None = None,
-        ahead: float = 0.2,
+        ahead: float = SHALLOW,
     ) -> None:
         joints = len(machine.joints)
         real = np.zeros(joints) if position is None else position.astype(np.float64)

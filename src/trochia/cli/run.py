@@ -13,6 +13,7 @@ from trochia.cli import options
 from trochia.cli.record_options import recording_options, tell_recorded
 
 if TYPE_CHECKING:
+    from trochia.cli.run_figures import Figures
     from trochia.controller.recording import Take
     from trochia.controller.runtime import Runtime
     from trochia.languages.gcode import Reading
@@ -62,17 +63,19 @@ def command(
         else:
             show_verdict(job.verdict)
         sys.exit(1)
-    from trochia.backends.live_twin import LiveTwin  # noqa: PLC0415 - only what moves needs a backend
+    from trochia.backends.live_twin import DEEP, SHALLOW, LiveTwin  # noqa: PLC0415 - only what moves needs a backend
     from trochia.backends.switches import switches_of  # noqa: PLC0415
+    from trochia.cli.run_figures import Figures  # noqa: PLC0415
     from trochia.controller.runtime import Runtime  # noqa: PLC0415
     from trochia.program import WorkState  # noqa: PLC0415
 
-    twin = LiveTwin(job.machine, switches=switches_of(job.machine))
+    twin = LiveTwin(job.machine, switches=switches_of(job.machine), ahead=SHALLOW if virtual else DEEP)
     clock = 0.0 if virtual else time.monotonic()
     runtime = Runtime(twin, journal=journal, work=WorkState().placed(**place), now=clock)
     if take is not None:
         runtime.recorder.start(take, program=job.name)
-    session = _Session(runtime, virtual=virtual, now=clock, quiet=as_json)
+    figures = None if virtual else Figures(runtime)
+    session = _Session(runtime, virtual=virtual, now=clock, quiet=as_json, figures=figures)
     try:
         session.go(job.name, job.text.decode("latin-1"), yes=yes)
     finally:
@@ -83,15 +86,21 @@ def command(
     if as_json:
         options.print_json({"ok": not status.alarms, "state": status.state, "time_s": session.took,
                             "alarms": [alarm.message for alarm in status.alarms],
+                            "host": None if figures is None else figures.told(),
                             "recording": None if take is None else str(take.path)})  # fmt: skip
+    elif figures is not None:
+        click.echo(figures.sentence())
     sys.exit(1 if status.alarms else 0)
 
 
 class _Session:
     """A person at the machine: commands, questions, the line under way."""
 
-    def __init__(self, runtime: Runtime, *, virtual: bool, now: float, quiet: bool) -> None:
+    def __init__(
+        self, runtime: Runtime, *, virtual: bool, now: float, quiet: bool, figures: Figures | None = None
+    ) -> None:
         self._runtime, self._virtual, self._now, self._quiet = runtime, virtual, now, quiet
+        self._figures = figures
         self.took = 0.0
         if not virtual:
             runtime.start()
@@ -122,6 +131,8 @@ class _Session:
         if not yes:
             click.confirm("run?", abort=True, err=True)
         began = self._time()
+        if self._figures is not None:
+            self._figures.begin()
         self._send(c.Run())
         self._follow(yes=yes)
         self.took = self._time() - began

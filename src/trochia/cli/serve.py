@@ -91,11 +91,11 @@ def command(
 def _runtime(machine: Machine, journal: Path | None, recordings: Path | None) -> Runtime:
     import time  # noqa: PLC0415
 
-    from trochia.backends.live_twin import LiveTwin  # noqa: PLC0415 - only what moves needs a backend
+    from trochia.backends.live_twin import DEEP, LiveTwin  # noqa: PLC0415 - only what moves needs a backend
     from trochia.backends.switches import switches_of  # noqa: PLC0415
     from trochia.controller.runtime import Runtime  # noqa: PLC0415
 
-    twin = LiveTwin(machine, switches=switches_of(machine))
+    twin = LiveTwin(machine, switches=switches_of(machine), ahead=DEEP)
     return Runtime(twin, journal=journal, recordings=recordings, now=time.monotonic())
 
 

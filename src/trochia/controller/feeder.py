@@ -28,6 +28,8 @@ ROW = 0.004  #: longest time of a row [s]
 ASTRAY = 2.5e-7  #: greatest distance of a row from the plan [mm or degree]
 DONE = 1e-6  #: a motion is at its end that near [s]
 CHUNK = 0.05  #: motion sent at a time [s]
+SOON = 0.2  #: motion that is sent at once, where the backend wants as much [s]
+SPARE = 2  #: chunks beyond that in one call
 STOP = 0.6  #: ∫ s du that is kept ahead; a half stops from rate 1
 STEEPEST = 1000.0  #: greatest slew [1/s]: at rest any would do
 _INSIDE = np.array([0.02, 0.5, 0.98])  #: where in a row its slew is looked at
@@ -91,7 +93,12 @@ class Feeder:
         """
         now = self.plan_time(executed)
         self._stops = [stop for stop in self._stops if stop[0] > now]
+        spare = SPARE
         while self.sent < self.end - 1e-12 and not self._enough(now):
+            if self.sent - now >= SOON and self._can_stop:
+                spare -= 1
+                if spare < 0:
+                    return  # the rest of a deep queue is filled turn by turn
             begin, end = self.sent, min(self.sent + CHUNK, self.end)
             end = self.lit_from if begin < self.lit_from < end else end
             portions = self._portions(begin, end)
@@ -141,7 +148,12 @@ class Feeder:
                         power=np.zeros(1, np.float32), slew=np.array([STEEPEST]))  # fmt: skip
 
     def _enough(self, now: float) -> bool:
-        return self.sent - now >= self._ahead and sum(stop for _, stop in self._stops) >= STOP
+        return self.sent - now >= self._ahead and self._can_stop
+
+    @property
+    def _can_stop(self) -> bool:
+        """Whether the backend could stop by itself in what it holds."""
+        return sum(stop for _, stop in self._stops) >= STOP
 
     def _cuts(self, part: Portion) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return beginnings and durations of rows [s]: cut where jerk changes, every ROW, and where they stray.

@@ -347,3 +347,19 @@ def test_a_switch_without_effect_is_refused(bench, mill: Machine) -> None:
     answer = bench(mill).on().command(c.Switches(machine_lock=True))
     assert not answer.ok
     assert "simulate" in answer.reason
+
+
+def test_a_deep_queue_is_filled_turn_by_turn(bench, mill: Machine) -> None:
+    b = bench(mill)
+    b.twin.ahead = b.runtime.controller.ahead = 0.6
+    b.on()
+    b.ok(c.Load(name="p", text="G21 G90 G94\nG1 X40 F1200\nM2\n"))
+    b.ok(c.Run())
+    held = [b.run(0.005).queued_s for _ in range(20)]
+    assert held[0] < 0.35  # what is needed soon, and two chunks
+    assert max(held) >= 0.55
+    b.ok(c.Hold())
+    assert b.run(0.05).state in {"holding", "held"}  # it is replaced as soon as before
+    b.run(until="held", most=0.5)
+    b.ok(c.Resume())
+    assert b.run(until="idle").axes[0].commanded == pytest.approx(40.0, abs=1e-9)

@@ -1,0 +1,43 @@
+"""`trochia run` on the twin: by a virtual clock and in real time, with what it asks of the host."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from typing import TYPE_CHECKING
+
+import pytest
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+SHORT = "G21 G90 G94\nG1 X4 F1200\nM2\n"
+
+
+def run(folder: Path, *args: str) -> subprocess.CompletedProcess[str]:
+    (folder / "part.ngc").write_text(SHORT)
+    code = "import sys; from trochia.cli import main; sys.argv[0] = 'trochia'; main()"
+    command = [sys.executable, "-c", code, "run", str(folder / "part.ngc"), "-m", "reference-mill", "-y", *args]
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
+def test_a_run_in_real_time_tells_what_it_asked_of_the_host(tmp_path: Path) -> None:
+    done = run(tmp_path, "--json", "--journal", str(tmp_path / "journal"))
+    assert done.returncode == 0, done.stderr
+    told = json.loads(done.stdout)
+    assert told["ok"]
+    host = told["host"]
+    assert host["underruns"] == 0
+    assert host["processor_percent"] > 0.0
+    assert host["command_to_motion_ms"] > 0.0
+    assert set(host) == {"underruns", "processor_percent", "longest_turn_ms", "latest_turn_ms", "least_queued_ms",
+                         "command_to_motion_ms"}  # fmt: skip
+
+
+@pytest.mark.parametrize(("option", "told"), [((), "of a core"), (("--virtual",), "idle after")])
+def test_a_person_is_told_in_one_line(tmp_path: Path, option: tuple[str, ...], told: str) -> None:
+    done = run(tmp_path, *option)
+    assert done.returncode == 0, done.stderr
+    assert told in done.stdout
+    assert ("of a core" in done.stdout) == (option == ())
