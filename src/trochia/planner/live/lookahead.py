@@ -36,7 +36,6 @@ _SAME_PLACE = 1e-9  #: mm or degree
 _SAME_SPEED = 1e-9  #: of each other
 _SAME_ACCELERATION = 1e-7  #: of the limit
 _BLOCK = 8192
-_LOOK = 256  #: phases that are looked through at a time
 
 
 class Lookahead:
@@ -224,15 +223,14 @@ class Lookahead:
         while wanted > 0.0 or end < row + least:
             if end >= road.end and not road.more():
                 return road.end
-            rows = road.segments[end - road.base : end - road.base + _BLOCK]
-            seconds: NDArray[np.float64] = rows["length"] / np.minimum(rows["speed_limit"] * self.speeds.feed, most)
-            whole = float(seconds.sum())
-            if whole < wanted or end + len(rows) <= row + least:
-                count = len(rows)
-            else:
-                count = max(int(np.searchsorted(np.cumsum(seconds), wanted)) + 1, row + least - end)
-            wanted -= whole
-            end += min(count, len(rows))
+            rows = road.rows(end, min(end + _BLOCK, road.end))
+            count = min(max(row + least - end, 0), len(rows))
+            if wanted > 0.0:
+                seconds: NDArray[np.float64] = rows["length"] / np.minimum(rows["speed_limit"] * self.speeds.feed, most)
+                whole = float(seconds.sum())
+                enough = len(rows) if whole < wanted else int(np.searchsorted(np.cumsum(seconds), wanted)) + 1
+                count, wanted = min(max(count, enough), len(rows)), wanted - whole
+            end += count
         if end >= road.end:
             road.more()  # whether the program ends here
         return end
@@ -317,16 +315,15 @@ def _joints(phases: NDArray[Any]) -> NDArray[np.intp]:
 
 def _joint_before(phases: NDArray[Any], t: float, least: int) -> int | None:
     """Return the last phase, ``least`` or later, that begins where its segment does, in motion and not after ``t``."""
-    end = bisect_right(phases["t"], t)
-    first = end
-    while first > least:
-        first = max(least, first - _LOOK)
-        before = max(first - 1, 0)
-        joints = _joints(phases[before:end]) + before
-        joints = joints[(joints > before) | (joints == 0)]  # of the first in sight it is not known
-        joints = joints[joints >= least]
-        if len(joints):
-            return int(joints[-1])
+    segments, places, flags = phases["segment"], phases["s"], phases["flags"]
+    for k in range(bisect_right(phases["t"], t) - 1, least - 1, -1):
+        if flags[k] or places[k] > _SAME_PLACE:
+            continue
+        before = k - 1
+        while before >= 0 and flags[before]:
+            before -= 1
+        if before < 0 or segments[before] != segments[k]:
+            return k
     return None
 
 

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from trochia.planner.live.road import Place, Road
     from trochia.planner.schedule import Profile, Schedule
 
-_BLOCK = 65_536
+_FEW = 256  #: phases there is room for at least; most segments have one or two
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -88,7 +88,7 @@ def plan_window(road: Road, rules: Rules, start: Place, end: int, speeds: Speeds
         where, seconds = where[ahead], seconds[ahead]
     path = Toolpath(axes=road.axes, start=np.zeros(axes), segments=rows, pool=pool)
     schedule: Schedule = rules.profile(path, rules.limits, Rests(segments=where, seconds=seconds, times={}))
-    blocks = list(schedule.phases(_BLOCK))
+    blocks = list(schedule.phases(2 * len(rows) + _FEW))
     phases = blocks[0] if len(blocks) == 1 else joined(blocks)
     if start.s > 0.0:
         phases["s"][phases["segment"] == 0] += start.s
