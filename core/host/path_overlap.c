@@ -9,13 +9,16 @@
  *
  * Deviation: in the first half take the programmed point L ((1 - u)^3 - u^3) / 3 before the corner.  It is (T2 - T1) L
  * u^3 / 3 away, and these points are all of them from d before to the corner; in the second half the same backwards.
- * So either path is no farther than |T2 - T1| L / 24 from the other: L = 24 P / |T2 - T1|. */
+ * So either path is no farther than |T2 - T1| L / 24 from the other: L = 24 P / |T2 - T1|.  path_worth.c says how much
+ * of that is of use, and where a triangle, or a stop, is passed sooner. */
 #include <math.h>
 
 #include "host/path_smooth.h"
 
 /* Speed falls and rises again within the lines: between two overlaps passed alike it needs 4 L of way. */
 static const double ROOM = 0.25;
+/* A triangle's legs that take less of the shorter line are no part of a chain. */
+static const double LONE = 0.5;
 /* Where lines leave less than this of the range that P allows, an overlap gives way to a chain beside it, whose hats
  * would have to leave out their last joints: turning by less than this. */
 static const double PART = 0.6, SHALLOW = 0.35;
@@ -29,7 +32,15 @@ void trochia_overlap_want(const trochia_frame *frame, const trochia_curve *a, co
     for (uint32_t i = 0; i < frame->n; i++)
         both[i] = a->t1[i] + b->t0[i];
     /* the same jerk on both: v^3 = J / |x'''| */
-    if (2.0 * trochia_group_norm(frame, both) * leg * leg >= turn->size * length * length)
+    int faster = 2.0 * trochia_group_norm(frame, both) * leg * leg < turn->size * length * length;
+    if (!faster && leg >= LONE * shorter)
+        return;
+    int kind = trochia_corner_worth(frame, a, b, turn, leg, &length);
+    if (kind == TROCHIA_TURN_STOP) {
+        turn->kind = TROCHIA_TURN_STOP;
+        turn->wish = 0.0;
+    }
+    if (kind != TROCHIA_TURN_OVERLAP)
         return;
     turn->kind = TROCHIA_TURN_OVERLAP;
     turn->own = turn->wish;

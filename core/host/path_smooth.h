@@ -51,9 +51,14 @@ typedef struct {
 void trochia_turn_classify(const trochia_frame *frame, const trochia_curve *a, const trochia_curve *b,
                            trochia_turn *turn);
 
-/* Chooses the overlap for a corner of two lines where that is passed faster; its range is 3 wish. */
+/* Chooses the overlap for a corner of two lines where that is passed sooner, its range 3 wish; or a stop. */
 void trochia_overlap_want(const trochia_frame *frame, const trochia_curve *a, const trochia_curve *b,
                           trochia_turn *turn);
+
+/* Returns which of stop, corner (a triangle with this leg) and overlap passes a lone corner of two lines soonest; an
+ * overlap's range, at most `length`, is made no greater than it is of use. */
+int trochia_corner_worth(const trochia_frame *frame, const trochia_curve *a, const trochia_curve *b,
+                         const trochia_turn *turn, double leg, double *length);
 
 /* At both ends of one line: a small overlap becomes a corner again beside a chain. */
 void trochia_overlap_yield(trochia_turn *turn, trochia_turn *next);

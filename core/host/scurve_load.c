@@ -67,10 +67,22 @@ static trochia_sizes arc_row(const trochia_segment *segment, const double *c, ui
     return sizes;
 }
 
-static trochia_sizes cubic_row(double t0, double t1, double k0, double k1, double third, double length) {
-    trochia_sizes sizes = {fmax(fabs(t0), fabs(t1)) + length * length / 8.0 * fabs(third), fmax(fabs(k0), fabs(k1)),
-                           fabs(third)};
+static trochia_sizes cubic_row(double t0, double t1, double k0, double k1, double third) {
+    double along = fmax(fabs(t0), fabs(t1));
+    if (k0 * k1 < 0.0)
+        along = fmax(along, fabs(t0 - 0.5 * k0 * k0 / third));
+    trochia_sizes sizes = {along, fmax(fabs(k0), fabs(k1)), fabs(third)};
     return sizes;
+}
+
+/* A bound of |x'| on a cubic: x' lies between its ends and the middle control point of x'(s); or no farther from the
+ * line between its ends than its bend takes it. */
+static double longest_along(const double (*x)[36], uint32_t n, uint32_t linear, double length) {
+    double middle[9], ends = fmax(trochia_norm(x[0] + n, linear), trochia_norm(x[1] + n, linear));
+    for (uint32_t i = 0; i < linear; i++)
+        middle[i] = x[0][n + i] + 0.5 * length * x[0][2 * n + i];
+    return fmin(fmax(ends, trochia_norm(middle, linear)),
+                ends + length * length / 8.0 * trochia_norm(x[0] + 3 * n, linear));
 }
 
 /* Raises a stretch by one row. */
@@ -121,12 +133,12 @@ static double load_cubic(const trochia_segment *segment, const double *pool, con
         trochia_sizes size =
             cubic_row(trochia_dot_row(limits, i, x[0] + n), trochia_dot_row(limits, i, x[1] + n),
                       trochia_dot_row(limits, i, x[0] + 2 * n), trochia_dot_row(limits, i, x[1] + 2 * n),
-                      trochia_dot_row(limits, i, x[0] + 3 * n), length);
+                      trochia_dot_row(limits, i, x[0] + 3 * n));
         bind(stretch, size, limits->velocity[i], limits->acceleration[i], limits->jerk[i]);
     }
-    trochia_sizes size =
-        cubic_row(trochia_norm(x[0] + n, linear), trochia_norm(x[1] + n, linear), trochia_norm(x[0] + 2 * n, linear),
-                  trochia_norm(x[1] + 2 * n, linear), trochia_norm(x[0] + 3 * n, linear), length);
+    trochia_sizes size = {longest_along(x, n, linear, length),
+                          fmax(trochia_norm(x[0] + 2 * n, linear), trochia_norm(x[1] + 2 * n, linear)),
+                          trochia_norm(x[0] + 3 * n, linear)};
     bind(stretch, size, limits->path_velocity, limits->path_acceleration, limits->path_jerk);
     return size.along;
 }

@@ -9,6 +9,7 @@ import pytest
 
 from trochia.languages import gcode
 from trochia.machine.load import load
+from trochia.planner import plan
 from trochia.toolpath import SegmentKind, build
 
 MILL = load("reference-mill")
@@ -25,7 +26,7 @@ def cubics(path):
 @pytest.mark.parametrize("degrees", [40, 90, 150, 175])
 def test_a_corner_is_one_cubic_that_touches_its_tolerance(degrees):
     angle, tolerance = math.radians(degrees), 0.02
-    path = path_of(f"G64 P{tolerance}\nG1 X50 F600\nX{50 + 50 * math.cos(angle):.15f} Y{50 * math.sin(angle):.15f}")
+    path = path_of(f"G64 P{tolerance}\nG1 X50 F6000\nX{50 + 50 * math.cos(angle):.15f} Y{50 * math.sin(angle):.15f}")
     (row,) = cubics(path)
     jump = 2 * math.sin(angle / 2)
     length = path.segments["length"][row]
@@ -46,8 +47,8 @@ def test_a_shallow_corner_keeps_its_bend_continuous():
 
 
 def test_lines_that_are_short_for_it_keep_their_bend_continuous():
-    # 34 P / |m| is where the triangle's legs allow as much: 0.24 mm
-    for size, kinds in ((0.2, 2), (0.3, 1)):
+    # the triangle's legs, 6 P / |m| = 0.042 mm, are more than half of the shorter lines
+    for size, kinds in ((0.05, 2), (0.3, 1)):
         path = path_of(f"G64 P0.01\nG1 X{size} F600\nY{size}")
         assert len(cubics(path)) == kinds
 
@@ -69,6 +70,29 @@ def test_each_side_of_an_overlap_keeps_its_feed():
 def test_an_overlap_beside_a_slow_move_is_short():
     long, short = (path_of(f"G64 P0.5\nG1 X40 F6000\nY40 F{feed}") for feed in (6000, 60))
     assert short.segments["length"][cubics(short)].sum() < 0.1 * long.segments["length"][cubics(long)].sum()
+
+
+def test_a_corner_that_a_slow_feed_passes_anyhow_is_no_overlap():
+    slow = path_of("G64 P0.5\nG1 X50 F60\nY50")
+    assert len(cubics(slow)) == 2
+    line = gcode.read("G1 X100 F60\nM2\n")
+    straight = plan(build(line, MILL, continuity=2), MILL, program=line, profile="s-curve").duration
+    assert plan(slow, MILL, program=line, profile="s-curve").duration == pytest.approx(straight, rel=1e-6)
+
+
+@pytest.mark.parametrize("degrees", [3, 10, 20, 30, 60, 90, 135, 170])
+@pytest.mark.parametrize("tolerance", [0.0001, 0.003, 0.2])
+def test_a_corner_is_taken_as_it_costs_least(degrees, tolerance):
+    angle = math.radians(degrees)
+    for size, feed in ((1.0, 300), (10.0, 60), (40.0, 6000)):
+        zig = "\n".join(f"X{k * size * math.cos(angle / 2):.12f} Y{k % 2 * size * math.sin(angle / 2):.12f}"
+                        for k in range(1, 10))  # fmt: skip
+        times = []
+        for mode, overlap in ((f"G64 P{tolerance}", True), (f"G64 P{tolerance}", False), ("G61.1", True)):
+            program = gcode.read(f"{mode}\nG1 F{feed}\n{zig}\nM2\n")
+            path = build(program, MILL, continuity=2, overlap=overlap)
+            times.append(plan(path, MILL, program=program, profile="s-curve").duration)
+        assert times[0] <= min(times[1:]) * 1.002
 
 
 def test_program_and_corners_stay_inside_their_memory():
