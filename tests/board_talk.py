@@ -66,15 +66,19 @@ class Talk:
 
     def span(self, counts: dict[int, int], interval: int, *, last: bool = True, outputs: int | None = None) -> None:
         """Every motor makes its steps, signed, at one interval [ticks], and there is an interval of rest behind."""
+        self.spans({motor: (interval, count) for motor, count in counts.items()}, last=last, outputs=outputs)
+
+    def spans(self, rows: dict[int, tuple[int, int]], *, last: bool = True, outputs: int | None = None) -> None:
+        """As ``span``, with an interval for each motor."""
         head, parts = np.zeros((), SPAN), b""
-        for motor, count in sorted(counts.items()):
+        for motor, (interval, count) in sorted(rows.items()):
             part = np.zeros((), PART)
             part["first"], part["interval"], part["stride"] = interval * 256, interval * 256, 1
             part["count"], part["flags"] = abs(count) - 1, BACKWARDS if count < 0 else 0
             parts += part.tobytes()
             head["motors"] |= 1 << motor
         head["number"], head["slew"] = self.number, 3000
-        head["duration"] = interval * (2 + max(abs(count) for count in counts.values()))
+        head["duration"] = max(interval * (2 + abs(count)) for interval, count in rows.values())
         head["flags"] = (AT_REST if last else 0) | (0 if outputs is None else SET_OUTPUTS)
         head["outputs"] = outputs or 0
         self.number += 1

@@ -52,6 +52,12 @@ def talk(chip_program, board_image, request):
 
 
 @pytest.fixture
+def register():
+    """The motor shield's register, read from the chip's pins."""
+    return _load("shield_pins").Register()
+
+
+@pytest.fixture
 def plug(chip_program, board_image, request, tmp_path):
     """Plugs a board in: its image on the simulated chip, or a function that answers, on a pseudo-terminal."""
 

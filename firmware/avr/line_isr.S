@@ -22,13 +22,27 @@
 #define ACTS _SFR_IO_ADDR(GPIOR0), 0
 #define MATCH _SFR_IO_ADDR(TIFR1), OCF1A
 
-    .macro toggle
+#ifdef BOARD_COILS /* a pulse is a call, and over when it returns */
+    .macro raise
+    tst PINS
+    breq 1f
+    call coils_enter
+1:
+    .endm
+    .macro lower
+    .endm
+#else
+    .macro raise
     out _SFR_IO_ADDR(BOARD_STEPS), PINS
 #ifdef BOARD_FOURTH
     sbrc PINS, BOARD_FOURTH
     sbi _SFR_IO_ADDR(PINB), 4
 #endif
     .endm
+    .macro lower
+    raise
+    .endm
+#endif
 
     .macro wait cycles
     .rept \cycles / 2
@@ -41,7 +55,7 @@
 TIMER1_COMPA_vect:
     in STATUS, _SFR_IO_ADDR(SREG)
 again:
-    toggle
+    raise
     dec COUNT
     breq reload
     add FRACTION, ADD
@@ -50,7 +64,7 @@ again:
     sts OCR1AH, AT_HIGH
     sts OCR1AL, AT_LOW
     wait 12
-    toggle
+    lower
     lds NOW_LOW, TCNT1L
     lds NOW_HIGH, TCNT1H
     cp AT_LOW, NOW_LOW
@@ -80,7 +94,7 @@ load:
     adc AT_HIGH, NOW_HIGH
     sts OCR1AH, AT_HIGH
     sts OCR1AL, AT_LOW
-    toggle
+    lower
     ld PINS, Z+
     ld COUNT, Z+
     dec COUNT
@@ -116,7 +130,7 @@ overdue:
     rjmp again
 dry:
     wait 8
-    toggle
+    lower
     clr PINS
     lds r30, TIMSK1
     andi r30, ~(1 << OCIE1A)

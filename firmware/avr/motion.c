@@ -220,18 +220,18 @@ void motion_cut(const trochia_cut *order) {
 }
 
 void motion_switch(const trochia_put *order) {
-    if (order->enable != 255) {
-        enabled = order->enable != 0;
-        board_enable(enabled);
-        if (!enabled && underway)
-            motion_stop(TROCHIA_ORDERED);
-    }
     ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
         if (order->lit != 255)
             span_lit = order->lit;
         outputs = (uint8_t)((outputs & ~order->mask) | (order->outputs & order->mask));
         board_outputs(outputs);
         beam_put();
+    }
+    if (order->enable != 255) {
+        enabled = order->enable != 0;
+        board_enable(enabled);
+        if (!enabled && underway)
+            motion_stop(TROCHIA_ORDERED);
     }
 }
 

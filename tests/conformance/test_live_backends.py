@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,6 +18,7 @@ from trochia.backends.live import Orders, Watch
 from trochia.backends.segments import Segments, sampled
 from trochia.errors import LocalProtocolError
 from trochia.machine.io import Channel
+from trochia.machine.transmissions import Leadscrew
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -28,20 +30,35 @@ if TYPE_CHECKING:
 STEP = 0.01  #: between polls [s]
 
 
+@pytest.fixture(params=[*sorted(LIVE_BACKENDS), *BOARDS])
+def kind(request: pytest.FixtureRequest) -> str:
+    return request.param
+
+
 @pytest.fixture
-def machine() -> Machine:
+def machine(kind: str) -> Machine:
     made = trochia.load("reference-mill")
+    if kind in BOARDS and BOARDS[kind].coils:  # full steps of two motors
+        made = shield_stage()
     return replace(made, io=(Channel(name="touch", kind="input"), Channel(name="lamp", kind="latched")))
 
 
-@pytest.fixture(params=[*sorted(LIVE_BACKENDS), *BOARDS])
-def backend(request: pytest.FixtureRequest, machine: Machine) -> Iterator[SegmentBackend]:
-    if request.param in BOARDS:  # the real image, on the simulated chip
+def shield_stage() -> Machine:
+    """The motor shield's stage, faster than it is, on a screw of 10 mm."""
+    made = trochia.load("shield-stage")
+    axes = tuple(replace(axis, velocity=200.0, acceleration=800.0, jerk=20_000.0) for axis in made.axes)
+    screw = Leadscrew(lead=Fraction(10))
+    return replace(made, axes=axes, joints=tuple(replace(j, transmission=screw, pulse_rate=None) for j in made.joints))
+
+
+@pytest.fixture
+def backend(kind: str, request: pytest.FixtureRequest, machine: Machine) -> Iterator[SegmentBackend]:
+    if kind in BOARDS:  # the real image, on the simulated chip
         program, image = request.getfixturevalue("chip_program"), request.getfixturevalue("board_image")
-        board = BOARDS[request.param]
+        board = BOARDS[kind]
         made = LiveAvr(machine, ChipTransport(program, image(f"{board.name}-1000000"), mcu=board.mcu), board=board.name)
     else:
-        made = LIVE_BACKENDS[request.param](machine)
+        made = LIVE_BACKENDS[kind](machine)
     made.open(0.0)
     yield made
     made.close()

@@ -24,7 +24,7 @@ BOOTLOADER = 115_200
 def command(
     *, board: str, port: str | None, file: Path | None, baud: str, bootloader: int, dry_run: bool, yes: bool
 ) -> None:
-    """Write Trochia's image to a BOARD: uno-stepdir or mega-stepdir.
+    """Write Trochia's image to a BOARD: uno-stepdir, mega-stepdir, uno-l293d.
 
     What the board held before is overwritten.  Nothing moves: an image stands still with its drives off until a
     program connects.

@@ -78,7 +78,7 @@ class LiveAvr:
         self.inputs = Inputs(self)
         joints = len(self._names)
         self._queue = Queue(np.zeros(joints))
-        self._maker = SpanMaker(self._scale, 16_000_000, self._level)
+        self._maker = SpanMaker(self._scale, 16_000_000, self._level, self.board.closest)
         self._spans: list[Span] = []
         self._now = self._asked = 0.0
         self._executed = self._rate = self._stamp = 0.0

@@ -27,7 +27,7 @@ TOLERANCE = 384.0  #: of a step [ticks]: 24 µs at 16 MHz
 LOOKED = 1 << 20  #: ticks of steps made at once
 SHARE = 0.92  #: of the slew its rows allow, at least, a span must allow
 KEPT = 0.95  #: of the slew is used: the chip's clock is not the host's
-CLOSEST = 64  #: two steps of a motor [ticks]: 4 µs
+CLOSEST = 64  #: two steps of a motor, unless its board needs more [ticks]: 4 µs
 
 _POWERS = np.arange(4)
 
@@ -54,10 +54,15 @@ class SpanMaker:
         Ticks a second [Hz].
     power
         Beam's level, 0 … 255, of a row's power.
+    closest
+        Two steps of a motor may be [ticks].
     """
 
-    def __init__(self, steps_per_unit: NDArray[np.float64], clock: int, power: Callable[[float], int]) -> None:
+    def __init__(
+        self, steps_per_unit: NDArray[np.float64], clock: int, power: Callable[[float], int], closest: int = CLOSEST
+    ) -> None:
         self.clock = clock
+        self._closest = closest
         self._scale = steps_per_unit
         self._power = power
         self.count = np.zeros(len(steps_per_unit), np.int64)
@@ -106,7 +111,7 @@ class SpanMaker:
             at[0] += skip
             standing = int(self.count[j] + self._ways[j].sum(dtype=np.int64))
             ticks, ways = cubic_steps(rows, at, standing)
-            self._ticks[j] = np.concatenate([self._ticks[j], _spaced(ticks, self._looked)])
+            self._ticks[j] = np.concatenate([self._ticks[j], _spaced(ticks, self._looked, self._closest)])
             self._ways[j] = np.concatenate([self._ways[j], ways])
         self._looked = end
 
@@ -169,10 +174,10 @@ class SpanMaker:
         if turn:
             end, count = int(ticks[turn]), turn
         gaps = np.diff(ticks[:count])
-        if gaps.size and gaps.min() < CLOSEST:
+        if gaps.size and gaps.min() < self._closest:
             raise LimitError(
                 f"joint {joint}: {self.clock / gaps.min():,.0f} steps/s are more than a motor can be given",
-                hint=f"At most {self.clock // CLOSEST:,} a second: lower the speed or the micro-steps.",
+                hint=f"At most {self.clock // self._closest:,} a second: lower the speed or the micro-steps.",
             )
         part, at = fit_one(ticks[:count] - self.at, TOLERANCE)
         part["flags"] |= BACKWARDS if ways[0] < 0 else 0
@@ -193,16 +198,16 @@ class SpanMaker:
             head["motors"] |= 1 << j
             self.count[j] += int(self._ways[j][0]) * count
             self._ticks[j], self._ways[j] = self._ticks[j][count:], self._ways[j][count:]
-        self._ticks = [_spaced(ticks, latest) for ticks in self._ticks]
+        self._ticks = [_spaced(ticks, latest, self._closest) for ticks in self._ticks]
         head["duration"] = latest - self.at
         made = Span(number=self.number, start=self.at, end=latest, before=before, payload=head.tobytes() + parts)
         self.at, self.number = latest, self.number + 1
         return made
 
 
-def _spaced(ticks: NDArray[np.int64], at: int) -> NDArray[np.int64]:
+def _spaced(ticks: NDArray[np.int64], at: int, closest: int) -> NDArray[np.int64]:
     """Return step ticks of which the first few that come too early are put off."""
-    few = np.arange(min(len(ticks), 8)) * CLOSEST
+    few = np.arange(min(len(ticks), 8)) * closest
     first = np.maximum.accumulate(np.maximum(ticks[:8], at) - few) + few
     return np.concatenate([first, ticks[8:]])
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from trochia.backends.avr.windings import MASK, windings
 from trochia.errors import ConfigError
 from trochia.kernels.link import LOOK, PUT
 
@@ -25,7 +26,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Board:
-    """One kind of board: the chip, its pins by number, and how many motors it has."""
+    """One kind of board: the chip, its pins by number, and how many motors it has.
+
+    Attributes
+    ----------
+    closest
+        Two steps of a motor [ticks].
+    coils
+        Whether the chip drives the windings itself; else it makes step pulses.
+    """
 
     name: str
     mcu: str
@@ -33,6 +42,8 @@ class Board:
     motors: int
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
+    closest: int = 64
+    coils: bool = False
 
 
 BOARDS = {
@@ -46,27 +57,36 @@ BOARDS = {
             name="mega-stepdir", mcu="atmega2560", programmer="wiring", motors=6,
             inputs=("B4", "B5", "B6", "K0", "K1", "K2", "K3", "K7"), outputs=("H5", "H6", "H3", "E3"),
         ),
+        Board(
+            name="uno-l293d", mcu="atmega328p", programmer="arduino", motors=2,
+            inputs=("C0", "C1", "C2", "C3", "C4", "C5"), outputs=("B1", "D2"), closest=2500, coils=True,
+        ),
     )
 }  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Wiring:
-    """Bits of a machine's channels: inputs with the level at which each is active, and outputs."""
+    """Bits of a machine's channels: inputs with the level at which each is active, and outputs.
+
+    ``windings`` is what a board that drives windings has in its other outputs, those of ``mask``.
+    """
 
     inputs: dict[str, tuple[int, int]]
     outputs: dict[str, int]
+    windings: int = 0
+    mask: int = 0
 
     def levels(self, values: Mapping[str, float]) -> int:
         """Return the levels of all outputs, a bit each."""
-        return sum(1 << bit for name, bit in self.outputs.items() if values[name])
+        return self.windings | sum(1 << bit for name, bit in self.outputs.items() if values[name])
 
     def put(self, orders: Orders, values: Mapping[str, float]) -> bytes:
         """Return the order that puts drives, light and outputs as these orders say, outputs being ``values`` then."""
         put = np.zeros((), PUT)
         put["enable"] = 255 if orders.enable is None else orders.enable
         put["lit"] = 255 if orders.lit is None else orders.lit
-        put["mask"] = sum(1 << self.outputs[name] for name in orders.outputs if name in self.outputs)
+        put["mask"] = self.mask | sum(1 << self.outputs[name] for name in orders.outputs if name in self.outputs)
         put["outputs"] = self.levels(values)
         return put.tobytes()
 
@@ -98,7 +118,7 @@ def wire(machine: Machine, board: Board) -> Wiring:
     Raises
     ------
     ConfigError
-        For more channels than the board has.
+        For more channels than the board has, or an excitation that it has not.
     """
     inputs = [channel for channel in machine.io if channel.kind == "input"]
     outputs = [channel for channel in machine.io if not channel.kind.endswith("input")]
@@ -106,6 +126,8 @@ def wire(machine: Machine, board: Board) -> Wiring:
     return Wiring(
         inputs={channel.name: (bits[channel.name], int(channel.inverted)) for channel in inputs},
         outputs=_placed([(channel.name, channel.pin) for channel in outputs], len(board.outputs), "output"),
+        windings=windings(machine) if board.coils else 0,
+        mask=MASK if board.coils else 0,
     )
 
 
