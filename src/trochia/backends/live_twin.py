@@ -13,7 +13,7 @@ import numpy as np
 from trochia.backends.executor import Executor
 from trochia.backends.live import BUILT_IN, Orders, Report, Ticks, Trouble
 from trochia.backends.plant import Plant
-from trochia.backends.switches import crossing
+from trochia.backends.switches import Indexes, crossing
 from trochia.errors import LocalProtocolError
 from trochia.messages import Cause
 
@@ -31,6 +31,12 @@ if TYPE_CHECKING:
 
 SHALLOW, DEEP = 0.2, 0.6  #: motion it holds [s]: by a virtual clock; by a real one, for a host kept from its work
 AT_REST = 1000  #: servo periods at a time while servos settle
+
+
+def absolute_joints(machine: Machine) -> NDArray[np.bool_]:
+    """Return for each joint (joints,) whether its encoder knows at power-up where it is."""
+    known = np.array([axis.home is not None and axis.home.method == "absolute" for axis in machine.axes])
+    return np.array([bool(known[row != 0.0].all()) for row in machine.kinematics.matrix])
 
 
 class LiveTwin:
@@ -78,9 +84,12 @@ class LiveTwin:
         self.faulty: set[str] = set()
         self.tap: Callable[[Ticks], None] | None = None
         self._switches = dict(switches or {})
+        self._indexes = Indexes(machine)
+        self.inputs |= dict.fromkeys(self._indexes.names, False)
         self._names = [joint.name for joint in machine.joints]
-        self._offset = -real  # what the controller calls a position, less where it really is
-        self._executor = Executor(np.zeros(joints), machine.servo_period)
+        called = np.where(absolute_joints(machine), real, 0.0)
+        self._offset = called - real  # what the controller calls a position, less where it really is
+        self._executor = Executor(called, machine.servo_period)
         self._now = 0.0
         self._enabled = self._lit = False
         self._beam, self._line = 0.0, 0
@@ -199,7 +208,7 @@ class LiveTwin:
             self._tell_rest(ticks, settling=settling)
             return ticks
         braking = self._executor.braking
-        before = (self.plant.load.copy(), self._measured()) if self._watch else None
+        before = (self.plant.load.copy(), self.plant.motor.copy(), self._measured()) if self._watch else None
         told = self._executor.run(ticks, one=bool(self._watch))
         if self._executor.rate == 0.0 and not braking:
             self._troubles.append(Trouble(cause=Cause.UNDERRUN))
@@ -238,6 +247,7 @@ class LiveTwin:
         joints = len(self._names)
         self.tap(Ticks(
             period=self.machine.servo_period, executed=np.full(ticks, self._executor.executed),
+        loads = self.plant.loads if settling else np.tile(self.plant.load, (ticks, 1))
             commanded=np.tile(self._executor.commanded, (ticks, 1)), velocity=np.zeros((ticks, joints)),
             encoder=(self.plant.measured if settling else np.tile(self.plant.encoder(), (ticks, 1))) + self._offset,
             actual=(self.plant.loads if settling else np.tile(self.plant.load, (ticks, 1))) + self._offset,
@@ -254,15 +264,21 @@ class LiveTwin:
         encoder = self.plant.encoder() + self._offset
         return np.where(np.isfinite(encoder), encoder, self._executor.commanded)
 
-    def _look_at_inputs(self, loads: NDArray[np.float64], measured: NDArray[np.float64]) -> None:
-        """Brake at an input that is watched; a switch of the machine is caught inside the tick that began there."""
+    def _look_at_inputs(
+        self, loads: NDArray[np.float64], motors: NDArray[np.float64], measured: NDArray[np.float64]
+    ) -> None:
+        """Brake at an input that is watched; switches and index pulses are caught inside the tick that began there."""
         levels = self._read()
         for watch in self._watch:
-            if levels.get(watch.name) == watch.level:
+            share: float | None = None
+            if watch.name in self._indexes.names:
+                share = self._indexes.passed(watch.name, motors, self.plant.motor)
+            elif levels.get(watch.name) == watch.level:
                 switch = self._switches.get(watch.name)
                 share = 1.0 if switch is None else crossing(switch, loads, self.plant.load, level=watch.level)
                 self._caught = (watch.name, measured + share * (self._measured() - measured))
                 self._watch, self._executor.braking, self._beam = (), True, 0.0
+            if share is not None:
                 return
 
     def _look_at_joints(self) -> None:

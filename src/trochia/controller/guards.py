@@ -104,4 +104,4 @@ def homes_to(axis: Axis, name: str) -> bool:
     if home.method == "limit":
         switch = axis.limit_plus if home.towards == "+" else axis.limit_minus
         return switch is not None and switch.input == name
-    return home.input == name
+    return name in {home.input, home.second}

@@ -15,6 +15,7 @@ from trochia.backends.switches import switches_of
 from trochia.controller.doings import OUTPUTS_OFF
 from trochia.controller.guards import stands_on
 from trochia.controller.homing import Home as Homing
+from trochia.controller.homing import squared
 from trochia.controller.job import Job
 from trochia.controller.jog import Jog
 from trochia.controller.readying import MDI
@@ -288,6 +289,9 @@ def _jog(
                                    f"{axis.minimum:g} to {axis.maximum:g}")  # fmt: skip
     here = it.position()
     for axis in axes:
+    apart = squared(it.machine, it.report)
+    if apart:
+        raise LocalProtocolError(f"joints of one axis stand apart: {' '.join(apart)}", hint="Home it first.")
         switch = stands_on(it.machine, it.report, axis.name, target[axis.name] - here[axis.name])
         if switch is not None:
             raise OutOfTravelError(f"{axis.name} stands on its limit switch {switch}", hint="Jog the other way.")

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from trochia.machine.joints import Joint
+    from trochia.machine.axes import Axis
     from trochia.machine.machine import Machine
 
 
@@ -151,6 +152,9 @@ def _check_switches(machine: Machine) -> None:
                 raise ConfigError("missing: the axis is homed to it", key=f"axes.{axis.name}.{end}")
             if home.method.endswith("index") and not _has_index(machine, axis.name):
                 raise ConfigError("needs a joint whose encoder gives an index", key=f"axes.{axis.name}.home.method")
+            if home.second is not None:
+                named["home.second"] = home.second
+                _check_gantry(machine, axis)
         for key, name in named.items():
             if name not in inputs:
                 raise ConfigError(f"there is no input {name!r} under [io]", key=f"axes.{axis.name}.{key}",
@@ -172,6 +176,20 @@ def _check_panel(machine: Machine) -> None:
 
 def _has_index(machine: Machine, axis: str) -> bool:
     """Return whether a joint that moves with the axis gives an index pulse."""
+def _check_gantry(machine: Machine, axis: Axis) -> None:
+    """Refuse a second home switch of an axis that is no pair of joints of its own."""
+    assert axis.home is not None, "it has a second switch"
+    matrix = machine.kinematics.matrix
+    column = [a.name for a in machine.axes].index(axis.name)
+    rows = matrix[np.abs(matrix[:, column]) > 0.0]
+    if len(rows) != 2 or np.count_nonzero(rows) != 2:
+        raise ConfigError("only an axis that two joints drive, and nothing else, has one",
+                          key=f"axes.{axis.name}.home.second")  # fmt: skip
+    if axis.home.method != "switch":
+        raise ConfigError("a gantry is homed by its switches: the method must be switch",
+                          key=f"axes.{axis.name}.home.method")  # fmt: skip
+
+
     column = machine.kinematics.matrix[:, [a.name for a in machine.axes].index(axis)]
     return any(joint.encoder is not None and joint.encoder.index
                for joint, part in zip(machine.joints, column, strict=True) if part)  # fmt: skip

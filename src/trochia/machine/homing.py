@@ -46,7 +46,10 @@ class Homing:
     rest
         Where the axis goes afterwards; None: it stays.
     order
-        Axes of equal order are homed together, lower orders first.
+        Lower orders first; axes of equal order one after another, in the order of the axes.
+    second, square
+        The home switch of a gantry's second joint, by its name under [io], and what that joint reads there less what
+        the first reads at its own, when the gantry is square [mm or degree].
     """
 
     method: str = field(default="switch", metadata=key(Text(tuple(METHODS)), "what tells the reference"))
@@ -72,7 +75,14 @@ class Homing:
     rest: float | None = field(
         default=None, metadata=key(Quantity("length", motion=True), "where the axis goes afterwards; else it stays")
     )
-    order: int = field(default=0, metadata=key(Whole(), "lower ones first, equal ones together", Bound.NOT_NEGATIVE))
+    order: int = field(default=0, metadata=key(Whole(), "lower ones first", Bound.NOT_NEGATIVE))
+    second: str | None = field(default=None, metadata=key(Text(), "home switch of a gantry's second joint, under [io]"))
+    square: float = field(
+        default=0.0,
+        metadata=key(
+            Quantity("length", motion=True), "where the second joint trips it less where the first does its own"
+        ),
+    )
 
     def __post_init__(self) -> None:
         check_bounds(self)
