@@ -247,7 +247,6 @@ class LiveTwin:
         joints = len(self._names)
         self.tap(Ticks(
             period=self.machine.servo_period, executed=np.full(ticks, self._executor.executed),
-        loads = self.plant.loads if settling else np.tile(self.plant.load, (ticks, 1))
             commanded=np.tile(self._executor.commanded, (ticks, 1)), velocity=np.zeros((ticks, joints)),
             encoder=(self.plant.measured if settling else np.tile(self.plant.encoder(), (ticks, 1))) + self._offset,
             actual=(self.plant.loads if settling else np.tile(self.plant.load, (ticks, 1))) + self._offset,
@@ -276,9 +275,9 @@ class LiveTwin:
             elif levels.get(watch.name) == watch.level:
                 switch = self._switches.get(watch.name)
                 share = 1.0 if switch is None else crossing(switch, loads, self.plant.load, level=watch.level)
+            if share is not None:
                 self._caught = (watch.name, measured + share * (self._measured() - measured))
                 self._watch, self._executor.braking, self._beam = (), True, 0.0
-            if share is not None:
                 return
 
     def _look_at_joints(self) -> None:

@@ -294,9 +294,9 @@ class Controller:
         if self.state is State.RESUMING and job and job.feeder.plan_time(self.report.executed) >= self.back:
             self._happen(Event.BACK)
         if self.state is State.ALARM and self.activity is not None and self.report.still:
+            self.pending.append(self.activity.finish(whole=False))
             self.activity = None  # whatever it planned: nothing moves any more
             self.pending.append(Orders(stop=True, lit=False, watch=()))
-            self.pending.append(self.activity.finish(whole=False))
         if self.state is State.ALARM and not self.alarms and self.activity is None:
             self._happen(Event.CLEARED if self.report.enabled else Event.DARK)
 

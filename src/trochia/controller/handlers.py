@@ -287,11 +287,11 @@ def _jog(
         if it.trusted[axis.name] and not axis.minimum - 1e-9 <= target[axis.name] <= axis.maximum + 1e-9:
             raise OutOfTravelError(f"{axis.name} would go to {target[axis.name]:g} {axis.unit}, its travel is "
                                    f"{axis.minimum:g} to {axis.maximum:g}")  # fmt: skip
-    here = it.position()
-    for axis in axes:
     apart = squared(it.machine, it.report)
     if apart:
         raise LocalProtocolError(f"joints of one axis stand apart: {' '.join(apart)}", hint="Home it first.")
+    here = it.position()
+    for axis in axes:
         switch = stands_on(it.machine, it.report, axis.name, target[axis.name] - here[axis.name])
         if switch is not None:
             raise OutOfTravelError(f"{axis.name} stands on its limit switch {switch}", hint="Jog the other way.")

@@ -15,8 +15,8 @@ from trochia.units import did_you_mean
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from trochia.machine.joints import Joint
     from trochia.machine.axes import Axis
+    from trochia.machine.joints import Joint
     from trochia.machine.machine import Machine
 
 
@@ -150,11 +150,11 @@ def _check_switches(machine: Machine) -> None:
             end = "limit_minus" if home.towards == "-" else "limit_plus"
             if home.method == "limit" and ends[end] is None:
                 raise ConfigError("missing: the axis is homed to it", key=f"axes.{axis.name}.{end}")
-            if home.method.endswith("index") and not _has_index(machine, axis.name):
-                raise ConfigError("needs a joint whose encoder gives an index", key=f"axes.{axis.name}.home.method")
             if home.second is not None:
                 named["home.second"] = home.second
                 _check_gantry(machine, axis)
+            if home.method.endswith("index") and not _has_index(machine, axis.name):
+                raise ConfigError("needs a joint whose encoder gives an index", key=f"axes.{axis.name}.home.method")
         for key, name in named.items():
             if name not in inputs:
                 raise ConfigError(f"there is no input {name!r} under [io]", key=f"axes.{axis.name}.{key}",
@@ -174,8 +174,6 @@ def _check_panel(machine: Machine) -> None:
         raise ConfigError("only a machine with a beam has one", key="panel.arm", hint="Add [beam], or leave it out.")
 
 
-def _has_index(machine: Machine, axis: str) -> bool:
-    """Return whether a joint that moves with the axis gives an index pulse."""
 def _check_gantry(machine: Machine, axis: Axis) -> None:
     """Refuse a second home switch of an axis that is no pair of joints of its own."""
     assert axis.home is not None, "it has a second switch"
@@ -190,6 +188,8 @@ def _check_gantry(machine: Machine, axis: Axis) -> None:
                           key=f"axes.{axis.name}.home.method")  # fmt: skip
 
 
+def _has_index(machine: Machine, axis: str) -> bool:
+    """Return whether a joint that moves with the axis gives an index pulse."""
     column = machine.kinematics.matrix[:, [a.name for a in machine.axes].index(axis)]
     return any(joint.encoder is not None and joint.encoder.index
                for joint, part in zip(machine.joints, column, strict=True) if part)  # fmt: skip
