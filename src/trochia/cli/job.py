@@ -11,7 +11,7 @@ import click
 
 from trochia import api
 from trochia.cli.progress import Progress
-from trochia.program import Message
+from trochia.program import Message, UserCode
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -52,9 +52,11 @@ def judge(
 
 
 def show_messages(verdict: Verdict) -> None:
-    """Print what the program says to its operator, on standard error."""
+    """Print what the program says to its operator and what it calls of the machine's own, on standard error."""
     if verdict.plan is None:
         return
     for action in verdict.plan.program.actions:
         if isinstance(action, Message):
             click.echo(f"line {action.line}: {action.text}", err=True)
+        elif isinstance(action, UserCode):
+            click.echo(f"line {action.line}: calls {action}, a code of the machine's own", err=True)

@@ -66,12 +66,13 @@ def command(
     from trochia.backends.live_twin import DEEP, SHALLOW, LiveTwin  # noqa: PLC0415 - only what moves needs a backend
     from trochia.backends.switches import switches_of  # noqa: PLC0415
     from trochia.cli.run_figures import Figures  # noqa: PLC0415
+    from trochia.cli.user_codes import attach, work_of  # noqa: PLC0415
     from trochia.controller.runtime import Runtime  # noqa: PLC0415
-    from trochia.program import WorkState  # noqa: PLC0415
 
     twin = LiveTwin(job.machine, switches=switches_of(job.machine), ahead=SHALLOW if virtual else DEEP)
     clock = 0.0 if virtual else time.monotonic()
-    runtime = Runtime(twin, journal=journal, work=WorkState().placed(**place), now=clock)
+    runtime = Runtime(twin, journal=journal, work=work_of(job.machine, machine_name).placed(**place), now=clock)
+    end_codes = attach(runtime, job.machine, machine_name, blocking=virtual)
     if take is not None:
         runtime.recorder.start(take, program=job.name)
     figures = None if virtual else Figures(runtime)
@@ -80,6 +81,7 @@ def command(
         session.go(job.name, job.text.decode("latin-1"), yes=yes)
     finally:
         session.close()
+        end_codes()
     if take is not None:
         tell_recorded(take, runtime.recorder.failed, quiet=as_json)
     status = session.status
@@ -183,6 +185,8 @@ class _Session:
         from trochia.messages import command as c  # noqa: PLC0415
 
         request = self.status.request
+        if request is not None and request.kind == "hook":
+            return  # it goes on by itself
         text = request.text if request is not None else "held; go on"
         if yes or click.confirm(f"\n{text}?", default=True, err=True):
             self._send(c.Resume())

@@ -82,21 +82,24 @@ def command(
         click.echo(f"user operator, password {password}\nshown this once; kept in {users.path} as a key only")
     socket = listen(host, port)
     doors = Doors.of(int(socket.getsockname()[1]), allow, secure=certificate is not None)
-    runtime = _runtime(machine, journal, recordings)
+    runtime = _runtime(machine, machine_name, journal, recordings)
     desk = Desk(runtime, users, doors, log=None if journal is None else journal / "access")
     tls = (certificate, key) if certificate is not None and key is not None else None
     _serve(runtime, desk, Served(desk, socket, tls), _address(doors, host))
 
 
-def _runtime(machine: Machine, journal: Path | None, recordings: Path | None) -> Runtime:
+def _runtime(machine: Machine, name: str, journal: Path | None, recordings: Path | None) -> Runtime:
     import time  # noqa: PLC0415
 
     from trochia.backends.live_twin import DEEP, LiveTwin  # noqa: PLC0415 - only what moves needs a backend
     from trochia.backends.switches import switches_of  # noqa: PLC0415
+    from trochia.cli.user_codes import attach, work_of  # noqa: PLC0415
     from trochia.controller.runtime import Runtime  # noqa: PLC0415
 
     twin = LiveTwin(machine, switches=switches_of(machine), ahead=DEEP)
-    return Runtime(twin, journal=journal, recordings=recordings, now=time.monotonic())
+    runtime = Runtime(twin, journal=journal, recordings=recordings, work=work_of(machine, name), now=time.monotonic())
+    attach(runtime, machine, name)
+    return runtime
 
 
 def _address(doors: Doors, host: str) -> str:

@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from trochia.cli.user_codes import codes_of
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -78,7 +80,7 @@ def _of_machine(given: SetupFiles, reading: Reading, name: str) -> tuple[SetupFi
         given = replace(given, tools=home / machine.tools)
     if given.parameters is None and machine.parameters is not None:
         given = replace(given, parameters=home / machine.parameters, home=home)
-    return given, replace(reading, work=replace(reading.work, user_codes=machine.allow_user_m_codes))
+    return given, replace(reading, work=replace(reading.work, user_codes=codes_of(machine, name)))
 
 
 def _run_and_save(command: Callable[..., Any], given: SetupFiles, reading: Reading, values: dict[str, Any]) -> None:

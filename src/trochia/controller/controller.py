@@ -25,7 +25,7 @@ from trochia.controller.states import MOVING, TABLE, Event, State, legal
 from trochia.controller.status import axes_of, axis_statuses, io_of, position_of, unit_of
 from trochia.errors import TrochiaError
 from trochia.messages import Ack, Cause, OverrideStatus, ProgramStatus, Request, Status, SwitchStatus
-from trochia.program import AXES, Pause, ToolChange, WorkState
+from trochia.program import AXES, Pause, ToolChange, UserCode, WorkState
 
 if TYPE_CHECKING:
     from trochia.backends.live import Report
@@ -74,6 +74,8 @@ class Controller:
         self.interrupted: Interrupted | None = None  # the job before, if it did not come to its end
         self.activity: Activity | None = None
         self.request: Request | None = None
+        self.hooked: frozenset[int] = frozenset()  # codes M100 to M199 that have programs
+        self.hook = ""  # the one whose program runs
         self.panel = Watch(machine.panel)
         self.asked = 0.0  # when a command came last [s]
         self.resume_at: float | None = None  # when a job is resumed whose spindle has to get to its speed first [s]
@@ -326,6 +328,10 @@ class Controller:
         match job.waiting:
             case ToolChange(tool=tool):
                 self.ask("tool", f"put tool {tool} in, then resume")
+            case UserCode(number=number) as code if number in self.hooked:
+                self.ask("hook", f"{code} runs; the program goes on when it has ended")
+            case UserCode() as code:
+                self.ask("code", f"{code}: do what it stands for, then resume")
             case Pause() if job.waiting is not BLOCK_END:
                 self.ask("pause", "the program has stopped; resume goes on")
             case _:

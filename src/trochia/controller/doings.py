@@ -23,7 +23,6 @@ from trochia.program import (
     SpindleLock,
     SynchronisedOutput,
     Unfinished,
-    UserCode,
     WaitInput,
 )
 
@@ -41,7 +40,6 @@ OUTPUTS_OFF: Mapping[str, float] = dict[str, float].fromkeys(BUILT_IN, 0.0)  #: 
 #: actions that need more than this controller has, and what they are called
 CANNOT: dict[type[Action], str] = {
     SpindleLock: "motion locked to the spindle",
-    UserCode: "a code of the user's own (M100 to M199)",
     Unfinished: "a cycle that is not complete",
 }
 

@@ -124,6 +124,8 @@ def abort(it: Controller, _command: c.Abort, _now: float) -> str:
 
 def resume(it: Controller, _command: c.Resume, _now: float) -> str:
     """Go on."""
+    if it.hook:
+        raise LocalProtocolError(f"{it.hook} still runs", hint="Wait for its end, or abort the job.")
     check_overrides(it)
     it.panel.check_safe(it)
     if isinstance(it.activity, Job):

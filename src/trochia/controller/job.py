@@ -18,7 +18,7 @@ from trochia.controller.doings import Doings
 from trochia.controller.feeder import ROW, Feeder
 from trochia.controller.states import Event
 from trochia.planner.live import LivePlan
-from trochia.program import Action, Pause, Probe, ToolChange, WaitInput
+from trochia.program import Action, Pause, Probe, ToolChange, UserCode, WaitInput
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -255,6 +255,8 @@ class Job:
     def _waits(self, action: Action) -> bool:
         if isinstance(action, Pause):
             return not action.optional or self.options.optional_stop
+        if isinstance(action, UserCode):
+            return not self.options.dark
         return isinstance(action, ToolChange | Probe)
 
     def _reached(self, portions: list[Portion]) -> Iterator[tuple[float, int]]:

@@ -43,7 +43,9 @@ class Machine:
     dialect
         Whose G-code its programs are in, a name of :data:`DIALECTS`.
     allow_user_m_codes
-        Whether M100 to M199 may be called.
+        Whether all of M100 to M199 may be called.
+    user_m_codes
+        Folder of the programs of M100 to M199, relative to the machine file; None: nothing is run.
     profile
         Velocity profile the machine asks for, a name of :data:`PROFILES`; None leaves it to the planner.
 
@@ -84,6 +86,9 @@ class Machine:
     dialect: str = field(default="linuxcnc", metadata=key(Text(DIALECTS), "whose G-code its programs are in"))
     allow_user_m_codes: bool = field(
         default=False, metadata=key(Flag(), "M100 to M199 of G-code programs are codes of this machine")
+    )
+    user_m_codes: str | None = field(
+        default=None, metadata=key(Text(), "folder of programs M100 to M199 that run calls, beside the machine file")
     )
     profile: str | None = field(
         default=None,

@@ -129,6 +129,11 @@ class UserCode(Action):
     p: float | None
     q: float | None
 
+    def __str__(self) -> str:
+        """Return it as a program spells it."""
+        given = ((letter, value) for letter, value in (("P", self.p), ("Q", self.q)) if value is not None)
+        return " ".join([f"M{self.number}", *(f"{letter}{value:g}" for letter, value in given)])
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Message(Action):

@@ -43,7 +43,7 @@ class WorkState:
     unit
         Length in which variables tell points and offsets: that of the machine [mm].
     user_codes
-        M100 to M199 may be called.
+        Whether M100 to M199 may be called, or which of them.
     """
 
     systems: tuple[Offsets, ...] = (_NONE,) * 9
@@ -58,7 +58,7 @@ class WorkState:
     tool_offset: Offsets = _NONE
     variables: Mapping[int, float] = field(default_factory=dict[int, float])
     unit: float = 1.0
-    user_codes: bool = False
+    user_codes: bool | frozenset[int] = False
 
     def __post_init__(self) -> None:
         if not 1 <= self.active <= len(SYSTEMS):

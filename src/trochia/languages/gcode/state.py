@@ -66,7 +66,7 @@ class State:
     input_value
         What the last M66 read: 0 or 1, the value of an analogue input, or -1 after its time was over.
     user_codes
-        M100 to M199 may be called.
+        Whether M100 to M199 may be called, or which of them.
     unit
         Length in which variables tell points and offsets [mm].
     parameters
@@ -141,7 +141,7 @@ class State:
     adaptive_feed: bool = False
     feed_hold: bool = True
     input_value: float = 0.0
-    user_codes: bool = False
+    user_codes: bool | frozenset[int] = False
     unit: float = 1.0
     parameters: Parameters = field(default_factory=Parameters)
     saved: list[Modes | None] = field(default_factory=lambda: [None])

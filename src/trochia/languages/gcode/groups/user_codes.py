@@ -13,14 +13,20 @@ if TYPE_CHECKING:
     from trochia.languages.gcode.state import State
 
 NUMBERS = range(100, 200)
+_NONE = (
+    "M100 to M199 are the machine's own: its file allows them by allow_user_m_codes = true, or names the folder of "
+    "their programs by user_m_codes."
+)
 
 
 def _call(number: int) -> Handler:
     def call(block: Block, state: State, sink: Sink) -> None:
-        if not state.user_codes:
-            raise block.fault(UnknownCodeError, f"M{number} is not known", f"M{number}",
-                              hint="M100 to M199 are the machine's own: set allow_user_m_codes = true in its file "
-                              "where it has this one.")  # fmt: skip
+        known = state.user_codes
+        if not (known if isinstance(known, bool) else number in known):
+            hint = (
+                _NONE if known is False else f"The folder that user_m_codes names has no program M{number} to execute."
+            )
+            raise block.fault(UnknownCodeError, f"M{number} is not known", f"M{number}", hint=hint)
         sink.user_code(number, block.values.get("p"), block.values.get("q"))
 
     return call
