@@ -48,6 +48,13 @@ def dumps(machine: Machine, *, comments: bool = False) -> str:
     return "\n".join(writer.lines) + "\n"
 
 
+def table_of(header: str, description: Any, *, rotary: bool = False) -> list[str]:  # noqa: ANN401 - any variant
+    """Return the lines of a variant of a description as a table of its own, its kind first."""
+    writer = _Writer(comments=False)
+    writer.table(header, description, rotary=rotary, extra={"kind": (quote(description.kind), "")})
+    return writer.lines[1:]
+
+
 class _Writer:
     """Lines of a machine file."""
 
