@@ -28,12 +28,19 @@ joint = click.option("-j", "--joint", metavar="NAME", help="One of the machine's
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AskedAxis:
-    """A joint, its drive, what an experiment may do with it, and the greatest speed for one [rad/s]."""
+    """A joint of a machine, its drive, what an experiment may do with it, and the greatest speed for one [rad/s]."""
 
+    machine: str
+    rotary: bool
     name: str
     drive: ServoDrive
     bounds: Bounds
     speed: float
+
+    @property
+    def unit(self) -> str:
+        """Of its travel."""
+        return "degree" if self.rotary else "mm"
 
     @property
     def plant(self) -> ServoPlant:
@@ -79,7 +86,10 @@ def asked_axis(machine_name: str, joint_name: str | None) -> AskedAxis:
     scale = drive.per_radian
     bounds = Bounds(low=float(ends[0]) / scale, high=float(ends[1]) / scale, speed=float(velocity) / scale * 1.05,
                     command=drive.amplifier.command, current=drive.plant.amplifier.current * 1.001)  # fmt: skip
-    return AskedAxis(name=name, drive=drive, bounds=bounds, speed=float(velocity) / scale)
+    rotary = any(axis.rotary for axis, c in zip(loaded.axes, row, strict=True) if c)
+    return AskedAxis(
+        machine=machine_name, rotary=rotary, name=name, drive=drive, bounds=bounds, speed=float(velocity) / scale
+    )
 
 
 def plots(command: Callable[..., Any]) -> Callable[..., Any]:

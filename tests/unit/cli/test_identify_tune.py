@@ -3,14 +3,22 @@
 from __future__ import annotations
 
 import json
+from importlib import resources
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
 
+from trochia import api
 from trochia.cli import identify, tune
-from trochia.errors import ConfigError, RecordingError
+from trochia.errors import ConfigError, LimitError, RecordingError
+from trochia.experiments import TwinAxis
+from trochia.machine.servos import CascadeLoop
+
+if TYPE_CHECKING:
+    from trochia.kernels.servo import ServoSamples
 
 HEX = Path(__file__).parents[2] / "golden" / "servo" / "leadscrew-step-log.hex"
 
@@ -114,3 +122,141 @@ def test_options_that_do_not_go_together_are_named(words: tuple[str, ...], what:
     result = CliRunner().invoke(tune.command, words)
     assert result.exit_code == 2
     assert what in result.output
+
+
+@pytest.fixture
+def table(tmp_path: Path) -> Path:
+    """Return a machine file of one's own."""
+    path = tmp_path / "table.toml"
+    path.write_text((resources.files("trochia") / "data" / "machines" / "xy-table.toml").read_text(encoding="utf-8"))
+    return path
+
+
+def test_found_by_experiment_tuned_applied_run_and_undone(table: Path, tmp_path: Path) -> None:
+    """From an axis nobody knows to a tuned one in its file, which simulate then runs, and back."""
+    before, page = table.read_text(), tmp_path / "tuned.html"
+    found = json.loads(run(tune.command, "-m", str(table), "-j", "X", "--identify", "--apply", "--json", "-o",
+                           str(page)))  # fmt: skip
+    assert found["model"]["motor_inertia"] == pytest.approx(7.1626e-5, rel=0.01)
+    assert found["model"]["lag_s"] == pytest.approx(3e-4, rel=0.1)
+    assert found["uncertainty"]["motor_inertia"] > 0.0
+    assert found["before"]["margins"]["ms"] < found["margins"]["ms"] <= 1.6
+    assert found["metrics"]["following_error_peak"] < 0.1 * found["before"]["following_error_peak"]
+    assert found["files"] == [str(page), str(table)]
+    text = page.read_text()
+    assert text.count("<svg") == 1
+    assert "→" in text
+    tuned = api.load(table).joints[0].loop
+    assert isinstance(tuned, CascadeLoop)
+    assert tuned.position_gain == found["gains"]["position_gain"]
+    moved = json.loads(run(tune.command, "-m", str(table), "--move", "parabolic", "--size", "10 mm", "--json"))
+    assert moved["margins"] == pytest.approx(found["margins"], rel=1e-6)
+    assert moved["metrics"]["following_error_peak"] < 0.003
+    assert json.loads(run(tune.command, "-m", str(table), "--undo", "--json"))["undone"] == "joints.X.loop"
+    assert table.read_text() == before
+    with pytest.raises(ConfigError, match="nothing to undo"):
+        run(tune.command, "-m", str(table), "--undo")
+
+
+def test_a_shipped_machine_is_not_written_to() -> None:
+    with pytest.raises(ConfigError, match=r"is not written to(.|\n)*Copy it first: cp "):
+        run(tune.command, "-m", "xy-table", "--apply")
+    with pytest.raises(ConfigError, match="is no file"):
+        run(tune.command, "-m", "xy-table", "--undo")
+
+
+@pytest.mark.parametrize("kind", ["step", "parabolic"])
+def test_a_move_tells_its_figures_and_draws_them(kind: str, tmp_path: Path) -> None:
+    page = tmp_path / "move.html"
+    words = ("-m", "xy-table", "-j", "Y", "--move", kind, "--size", "1 mm", "-o", str(page))
+    found = json.loads(run(tune.command, *words, "--json"))
+    names = {"rise_s", "settling_s", "overshoot"} if kind == "step" else {"following_error_peak", "with_speed_s"}
+    assert names <= set(found["metrics"])
+    assert found["move"]["size"] == 1.0
+    assert set(found["suggested"]) == (set() if kind == "step" else {"i32", "i35"})
+    said = run(tune.command, *words)
+    assert ("settled within" if kind == "step" else "suggested i32") in said
+    assert "<svg" in page.read_text()
+
+
+def test_the_leadscrew_s_chip_is_tried_as_it_computes() -> None:
+    """Its gains, in volts: the crossover and margin that were published for them, but for sampling and the winding."""
+    found = json.loads(run(tune.command, "-m", "lathe", "-j", "Z", "--move", "parabolic", "--json"))
+    assert found["margins"]["pm_deg"] == pytest.approx(71.5, abs=1.0)
+    assert found["metrics"]["following_error_peak"] < 0.05
+
+
+def test_a_relay_tunes_a_joint() -> None:
+    found = json.loads(run(tune.command, "-m", "xy-table", "--rule", "relay", "--json"))
+    gains = found["gains"]
+    assert gains["kind"] == "pid"
+    assert gains["kp"] == pytest.approx(0.6 * gains["ku"], rel=1e-4)
+    assert gains["ku_sigma"] < 0.2 * gains["ku"]
+
+
+class CutError(RuntimeError):
+    """A line that breaks."""
+
+
+@pytest.mark.parametrize("words", [("--identify",), ("--rule", "relay")])
+@pytest.mark.parametrize("failure", [CutError, KeyboardInterrupt, LimitError("stopped: travel was exceeded")])
+@pytest.mark.parametrize("after", [3, 40])
+def test_tuning_never_leaves_a_motor_enabled(
+    words: tuple[str, ...], failure: BaseException | type[BaseException], after: int, table: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:  # fmt: skip
+    """Whatever breaks in the middle, the last thing that every axis was told is off, and the file is as it was."""
+    axes: list[TwinAxis] = []
+    real, advance, calls = TwinAxis.__init__, TwinAxis.advance, [0]
+
+    def made(self: TwinAxis, *given: object, **more: object) -> None:
+        axes.append(self)
+        real(self, *given, **more)  # type: ignore[arg-type]
+
+    def breaks(self: TwinAxis, *given: object) -> ServoSamples:
+        calls[0] += 1
+        if calls[0] > after:
+            assert self.enabled, "it breaks while the motor is on"
+            raise failure
+        return advance(self, *given)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(TwinAxis, "__init__", made)
+    monkeypatch.setattr(TwinAxis, "advance", breaks)
+    before = table.read_text()
+    result = CliRunner().invoke(tune.command, ["-m", str(table), "--apply", *words])
+    assert result.exit_code != 0
+    assert axes
+    assert not any(axis.enabled for axis in axes)
+    assert table.read_text() == before
+
+
+@pytest.mark.parametrize(
+    ("words", "what"),
+    [
+        (("--undo",), "give a machine with -m"),
+        (("-m", "xy-table", "--undo", "--apply"), "and nothing else"),
+        (("-m", "xy-table", "--size", "1 mm"), "are of a --move"),
+        (("-m", "xy-table", "--move", "step", "--apply"), "tunes nothing"),
+        (("-m", "xy-table", "--move", "step", "--size", "3 V"), "expected a length"),
+        (("-m", "xy-table", "--move", "step", "--size", "0 mm"), "must not be zero"),
+        (("-m", "xy-table", "--move", "parabolic", "--time", "0 s"), "above zero"),
+        (("-m", "xy-table", "-o", "tuned.bmp"), "ends in .png"),
+    ],
+)
+def test_options_of_moves_and_files_are_held_together(words: tuple[str, ...], what: str) -> None:
+    result = CliRunner().invoke(tune.command, words)
+    assert result.exit_code == 2
+    assert what in result.output
+
+
+@pytest.mark.parametrize(
+    ("words", "what"),
+    [
+        (("--size", "1000 mm"), "travel is -150 to 150"),
+        (("--size", "20 mm", "--time", "0.1 s"), "would run at 300 a second; 42 is allowed"),
+    ],
+)
+def test_moves_that_would_exceed_are_refused_before_moving(words: tuple[str, ...], what: str) -> None:
+    with pytest.raises(LimitError, match=what) as raised:
+        run(tune.command, "-m", "xy-table", "--move", "parabolic", *words)
+    assert "Nothing has moved" in str(raised.value)

@@ -88,24 +88,31 @@ class FollowingMetrics:
     ----------
     peak, rms
         Following error.
-    speed_part, acceleration_part
-        By how much it goes with speed [s] and acceleration [s²]: what feed-forward would take away.
+    speed_part, acceleration_part, friction_part
+        By how much it goes with speed [s], acceleration [s²] and the way of motion [unit of the error]: what
+        feed-forward would take away.
     """
 
     peak: float
     rms: float
     speed_part: float
     acceleration_part: float
+    friction_part: float
 
     def figures(self) -> dict[str, Any]:
         """Return what ``--json`` prints."""
         return {"following_error_peak": self.peak, "following_error_rms": self.rms,
-                "with_speed_s": self.speed_part, "with_acceleration_s2": self.acceleration_part}  # fmt: skip
+                "with_speed_s": self.speed_part, "with_acceleration_s2": self.acceleration_part,
+                "with_way": self.friction_part}  # fmt: skip
 
 
 def following_metrics(wanted: Array, measured: Array) -> FollowingMetrics:
     """Return the metrics of set-points (ticks, 3) and what was measured (ticks,)."""
     error = wanted[:, 0] - measured
-    parts, *_ = np.linalg.lstsq(wanted[:, 1:3], error, rcond=None)
-    return FollowingMetrics(peak=float(np.abs(error).max()), rms=float(np.sqrt(np.mean(error**2))),
-                            speed_part=float(parts[0]), acceleration_part=float(parts[1]))  # fmt: skip
+    columns = np.column_stack([wanted[:, 1:3], np.sign(wanted[:, 1])])
+    scale = np.maximum(np.abs(columns).max(axis=0), 1e-300)  # so that the fit is not one of rounding
+    parts = np.linalg.lstsq(columns / scale, error, rcond=None)[0] / scale
+    return FollowingMetrics(
+        peak=float(np.abs(error).max()), rms=float(np.sqrt(np.mean(error**2))), speed_part=float(parts[0]),
+        acceleration_part=float(parts[1]), friction_part=float(parts[2]),
+    )  # fmt: skip

@@ -19,6 +19,7 @@ from trochia.servo.axis import ServoAxis
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from trochia.kernels.servo import ServoSamples
     from trochia.machine.servo_plant import ServoPlant
     from trochia.servo.axis import Loop
 
@@ -37,7 +38,7 @@ class Moves:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Judged:
-    """A loop and what it did: times (ticks,), step and move as they were measured, following error."""
+    """A loop and what it did: times (ticks,), step and move as they were measured, following error, current [A]."""
 
     loop: Loop
     margins: Margins
@@ -47,6 +48,7 @@ class Judged:
     step_response: Array
     move_time: Array
     move_error: Array
+    move_current: Array
 
     def figures(self) -> dict[str, Any]:
         """Return what ``--json`` prints as metrics."""
@@ -69,13 +71,14 @@ def judge(plant: ServoPlant, loop: Loop, moves: Moves | None = None) -> Judged:
     ticks, t = _times(asked.listen, loop.period)
     wanted = np.zeros((ticks, 3))
     wanted[:, 0] = asked.step
-    response = _run(plant, loop, wanted)
+    response = _run(plant, loop, wanted).measured
     move = np.concatenate([_parabola(asked, loop.period), np.tile([asked.way, 0.0, 0.0], (ticks // 2, 1))])
-    measured = _run(plant, loop, move)
+    seen = _run(plant, loop, move)
     return Judged(
         loop=loop, margins=margins, step=step_metrics(t, response, asked.step),
-        following=following_metrics(move, measured), step_time=t, step_response=response,
-        move_time=loop.period * np.arange(len(move), dtype=np.float64), move_error=move[:, 0] - measured,
+        following=following_metrics(move, seen.measured), step_time=t, step_response=response,
+        move_time=loop.period * np.arange(len(move), dtype=np.float64), move_error=move[:, 0] - seen.measured,
+        move_current=seen.current,
     )  # fmt: skip
 
 
@@ -91,9 +94,9 @@ def _parabola(asked: Moves, period: float) -> Array:
                      asked.way / asked.time**2 * (6.0 - 12.0 * u)], axis=1)  # fmt: skip
 
 
-def _run(plant: ServoPlant, loop: Loop, wanted: Array) -> Array:
+def _run(plant: ServoPlant, loop: Loop, wanted: Array) -> ServoSamples:
     try:
-        return ServoAxis(plant, loop, step=2e-5).run(wanted).measured
+        return ServoAxis(plant, loop, step=2e-5).run(wanted)
     except LimitError as error:
         raise ConfigError(f"these gains are unstable on this plant: {error.message}", key="gains",
                           hint=error.hint) from None  # fmt: skip

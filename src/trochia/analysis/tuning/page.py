@@ -9,7 +9,8 @@ from html import escape
 
 _STYLE = """
 body { font: 15px/1.5 system-ui, sans-serif; color: #222; margin: 2rem auto; max-width: 72rem; padding: 0 1rem; }
-h1 { font-size: 1.3rem; } svg { width: 100%; height: auto; }
+h1 { position: absolute; width: 1px; height: 1px; overflow: hidden; clip-path: inset(50%); }
+svg { width: 100%; height: auto; }
 table { border-collapse: collapse; } td { padding: .25rem 1.5rem .25rem 0; border-bottom: 1px solid #e2e2e2; }
 td + td { font-variant-numeric: tabular-nums; }
 """

@@ -20,7 +20,9 @@ if TYPE_CHECKING:
 
     from trochia.analysis.identification.response import FrequencyResponse
     from trochia.analysis.tuning.moves import Judged
+    from trochia.analysis.tuning.trial import Trial
     from trochia.machine.servo_plant import ServoPlant
+    from trochia.servo.axis import Loop
 
     Array = NDArray[np.float64]
 
@@ -67,18 +69,48 @@ def _phase(value: NDArray[np.complex128]) -> Array:
 def tuning_picture(
     plant: ServoPlant, after: Judged, title: str, before: Judged | None = None, *, form: str = "png"
 ) -> bytes:
-    """Return step, following error, open loop and Nyquist plot, before and after."""
+    """Return step, following error, motor current, Bode and Nyquist plots, before and after."""
+    import matplotlib as mpl  # noqa: PLC0415 - as above
+    from matplotlib.figure import Figure  # noqa: PLC0415 - as above
+
+    with mpl.rc_context(_STYLE):
+        sheet = Figure(figsize=(11.0, 10.0), dpi=130, layout="constrained")
+        (step, nyquist), (move, bode), (current, phase) = sheet.subplots(3, 2, height_ratios=[5, 4, 3])
+        sheet.suptitle(title, x=0.01, ha="left", fontsize=13, fontweight="bold")
+        for judged, colour, name in ((before, _SOFT, "before"), (after, _BLUE, "after")):
+            if judged is not None:
+                _draw(plant, judged, (step, move, bode, nyquist), colour, name)
+                current.plot(judged.move_time * 1e3, judged.move_current, color=colour, linewidth=0.9, label=name)
+                f, whole = _opened(plant, judged.loop)
+                phase.semilogx(f, _phase(whole), color=colour, linewidth=1.4, label=name)
+        current.set(title="motor current of that move", xlabel="time [ms]", ylabel="A")
+        phase.set(title="phase of the loop", xlabel="frequency [Hz]", ylabel="°", yticks=[-360, -270, -180, -90, 0],
+                  ylim=(-370, 10))  # fmt: skip
+        phase.axhline(-180.0, color=_INK, linewidth=0.8)
+        _dress(step, move, bode, nyquist, after)
+        return _bytes(sheet, form)
+
+
+def trial_picture(seen: Trial, title: str, unit: str, *, form: str = "png") -> bytes:
+    """Return position, error, command and current of a move over time."""
     import matplotlib as mpl  # noqa: PLC0415 - as above
     from matplotlib.figure import Figure  # noqa: PLC0415 - as above
 
     with mpl.rc_context(_STYLE):
         sheet = Figure(figsize=(11.0, 7.6), dpi=130, layout="constrained")
-        (step, nyquist), (move, bode) = sheet.subplots(2, 2)
+        (place, command), (error, current) = sheet.subplots(2, 2, sharex=True)
         sheet.suptitle(title, x=0.01, ha="left", fontsize=13, fontweight="bold")
-        for judged, colour, name in ((before, _SOFT, "before"), (after, _BLUE, "after")):
-            if judged is not None:
-                _draw(plant, judged, (step, move, bode, nyquist), colour, name)
-        _dress(step, move, bode, nyquist, after)
+        t = seen.time * 1e3
+        place.plot(t, seen.wanted[:, 0], color=_SOFT, linewidth=1.2, linestyle=(0, (4, 2)), label="wanted")
+        place.plot(t, seen.measured, color=_BLUE, linewidth=1.8, label="measured")
+        place.legend(frameon=False)
+        error.plot(t, (seen.wanted[:, 0] - seen.measured) * 1e3, color=_ORANGE, linewidth=1.2)
+        command.plot(t, seen.command, color=_GREEN, linewidth=1.0)
+        current.plot(t, seen.current, color=_RED, linewidth=1.0)
+        place.set(title="position", ylabel=unit)
+        error.set(title="error", ylabel=f"0.001 {unit}", xlabel="time [ms]")
+        command.set(title="command", ylabel="V")
+        current.set(title="motor current", ylabel="A", xlabel="time [ms]")
         return _bytes(sheet, form)
 
 
@@ -90,14 +122,19 @@ def _draw(plant: ServoPlant, judged: Judged, axes: tuple[Axes, ...], colour: str
               label=f"{name}: settles {settles}, overshoot {figures.overshoot:.1%}")  # fmt: skip
     move.plot(judged.move_time * 1e3, judged.move_error * 1e3, color=colour, linewidth=1.4,
               label=f"{name}: {judged.following.peak * 1e3:.3g} mrad at most")  # fmt: skip
-    top = 0.499 / judged.loop.period
-    f = np.geomspace(top * 1e-3, top, 1500)
-    whole = open_loop(plant, judged.loop, f)
+    f, whole = _opened(plant, judged.loop)
     bode.loglog(f, np.abs(whole), color=colour, linewidth=1.6, label=f"{name}: |L|")
     bode.loglog(f, np.abs(1.0 / (1.0 + whole)), color=colour, linewidth=1.1, linestyle=(0, (4, 2)),
                 label=f"{name}: |S|, Ms {margins.ms:.2f}")  # fmt: skip
     nyquist.plot(whole.real, whole.imag, color=colour, linewidth=1.6,
                  label=f"{name}: GM {margins.gm:.2g}, PM {margins.pm_deg:.0f}°")  # fmt: skip
+
+
+def _opened(plant: ServoPlant, loop: Loop) -> tuple[Array, NDArray[np.complex128]]:
+    """Return frequencies [Hz], and the loop cut open there."""
+    top = 0.499 / loop.period
+    f = np.geomspace(top * 1e-3, top, 1500)
+    return f, open_loop(plant, loop, f)
 
 
 def _dress(step: Axes, move: Axes, bode: Axes, nyquist: Axes, after: Judged) -> None:

@@ -18,9 +18,11 @@ import numpy as np
 
 from trochia.analysis.tuning.margins import is_stable
 from trochia.analysis.tuning.metrics import StepMetrics, step_metrics
-from trochia.errors import LimitError
+from trochia.errors import ConfigError, LimitError
+from trochia.machine.servo_plant import Mode
 from trochia.servo.axis import Loop, ServoAxis
 from trochia.servo.filters import notch
+from trochia.servo.forward import feed_forward
 from trochia.servo.pid import Pid
 from trochia.servo.sampled import controller_response, plant_response
 
@@ -71,17 +73,25 @@ def cascade(
     plant: ServoPlant, w: float, period: float, *, filters: tuple[Biquad, ...] = (), limit: float = math.inf,
     averaged: int = 1,
 ) -> Loop:  # fmt: skip
-    """Return the loop of a speed crossover w [rad/s], with feed-forward of the plant's inertia and friction."""
-    per = plant.amplifier.gain * plant.torque_constant
+    """Return the loop of a speed crossover w [rad/s], with the feed-forward of the plant's inverse dynamics.
+
+    Raises
+    ------
+    ConfigError
+        For an amplifier that closes the speed itself.
+    """
+    amplifier = plant.amplifier
+    if amplifier.mode is Mode.SPEED:
+        raise ConfigError("the amplifier closes the speed itself: that loop cannot be shaped", key="amplifier.mode",
+                          hint="Tune it at the amplifier, and the position by --bandwidth of a model.")  # fmt: skip
+    per = amplifier.gain * plant.torque_constant / (plant.resistance if amplifier.mode is Mode.VOLTAGE else 1.0)
     inertia = (plant.motor_inertia + plant.load_inertia) / per
-    viscous = (plant.motor_friction.viscous + plant.load_friction.viscous) / per
-    coulomb = (plant.motor_friction.coulomb + plant.load_friction.coulomb) / per
-    return Loop(
+    loop = Loop(
         period=period, position=Pid(kp=w / POSITION),
-        speed=Pid(kp=inertia * w, ki=inertia * w * w / INTEGRAL, limit=limit), speed_forward=1.0,
-        acceleration_forward=inertia, viscous_forward=viscous, friction_forward=coulomb,
-        friction_smooth=max(plant.motor_friction.smooth, 1e-3), limit=limit, filters=filters, averaged=averaged,
+        speed=Pid(kp=inertia * w, ki=inertia * w * w / INTEGRAL, limit=limit),
+        limit=limit, filters=filters, averaged=averaged,
     )  # fmt: skip
+    return feed_forward(plant, loop)
 
 
 def shape(
@@ -92,7 +102,7 @@ def shape(
     Parameters
     ----------
     plant
-        The model, its amplifier one of current.
+        The model, its amplifier one of current or of voltage.
     most_ms
         Greatest sensitivity allowed.
     limit
