@@ -72,20 +72,20 @@ class PseudoBoard:
 class LiveChip:
     """A simulated chip that keeps to the clock on the wall as well as it can; it is reset when it is made.
 
-    ``runs`` is what it did, in order.
+    ``runs`` is what it did, in order, and ``at`` its time.
     """
 
     def __init__(self, program: Path, image: Path, mcu: str) -> None:
         self.chip = SimulatedChip(program, image, mcu=mcu)
-        self._at, self._since = 0.0, time.monotonic()
+        self.at, self._since = 0.0, time.monotonic()
         self.runs: list[object] = []
 
     def __call__(self, came: bytes) -> bytes:
         now = time.monotonic()
         step = min(now - self._since, 2 * PIECE)  # where the computer is too slow, the chip's time is
-        self._at, self._since = self._at + step, now
+        self.at, self._since = self.at + step, now
         if came:
             self.chip.feed(came)
-        run = self.chip.run_until(round(self._at * self.chip.frequency))
+        run = self.chip.run_until(round(self.at * self.chip.frequency))
         self.runs.append(run.events)
         return run.sent

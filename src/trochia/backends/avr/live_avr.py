@@ -8,6 +8,7 @@ the plan's at that stream time; at rest the steps are held against it.
 from __future__ import annotations
 
 import time
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -16,10 +17,11 @@ from trochia.backends.avr.clock import ChipClock
 from trochia.backends.avr.inputs import Inputs
 from trochia.backends.avr.session import Greeted, Session, Told
 from trochia.backends.avr.spans import SpanMaker, shortened, steps_made
+from trochia.backends.avr.troubles import TROUBLES, described
 from trochia.backends.avr.wiring import BOARDS, steps_per_unit, wire
 from trochia.backends.live import BUILT_IN, Orders, Report, Trouble
 from trochia.backends.queue import Queue
-from trochia.errors import LimitError, LinkTimeout, LocalProtocolError, RemoteProtocolError
+from trochia.errors import LimitError, LinkError, LinkTimeout, LocalProtocolError, RemoteProtocolError
 from trochia.kernels.link import BEGIN, CAUSES, CUT, FULL_RATE, PART, SPAN, STATES  # fmt: skip
 from trochia.messages import Cause
 
@@ -38,10 +40,6 @@ ASKED = 0.0035  #: before the end of a poll a status is asked for [s]
 QUIET = 0.003  #: before that nothing is sent, so that the question comes at its time [s]
 KEPT = 0.2  #: how long rows that were run through are kept [s]
 FILLED = 0.15  #: what the chip holds before it starts, where there is as much [s]
-_TROUBLES = {
-    "missed": Cause.UNDERRUN, "late_cut": Cause.UNDERRUN, "bad_span": Cause.UNDERRUN, "silence": Cause.LINK,
-    "estop": Cause.ESTOP,
-}  # fmt: skip
 
 
 class LiveAvr:
@@ -76,14 +74,12 @@ class LiveAvr:
         self.answer: Any = None
         self.status: Any = None
         self.inputs = Inputs(self)
-        joints = len(self._names)
-        self._queue = Queue(np.zeros(joints))
+        self._queue = Queue(np.zeros(len(self._names)))
         self._maker = SpanMaker(self._scale, 16_000_000, self._level, self.board.closest)
         self._spans: list[Span] = []
         self._now = self._asked = 0.0
         self._executed = self._rate = self._stamp = 0.0
-        self._epoch = 0
-        self._state = "idle"  # idle, loading, running
+        self._epoch, self._state = 0, "idle"  # idle, loading, running
         self._enabled = self._stopping = False
         self._begun = self._looked = -1
         self._timed: list[tuple[float, str, float]] = []
@@ -107,20 +103,17 @@ class LiveAvr:
         for name, (_, active) in self.wiring.inputs.items():
             self.inputs.put(name, level=1 - active)
         self.session.greet(now)
-        begun = time.monotonic()
         while self.answer is None:
-            self._exchange(self._now + 0.002)
-            if self._now - now > CONNECT or time.monotonic() - begun > 10 * CONNECT:
+            self._breathe()
+            if self._now - now > CONNECT:
                 raise LinkTimeout(
-                    "the board does not answer",
-                    hint="Is it the right port, at the right baud rate, with Trochia's image (`trochia flash`)?",
+                    f"no board with Trochia's image answers: {described(self.session.strange)}",
+                    hint="Is it the right port and baud rate?  `trochia boards` looks, `trochia flash` writes.",
                 )
-            if not self.transport.stride:
-                time.sleep(0.002)
         self.session.ask()
         self._asked = self._now
         while self.status is None and self._now - now < CONNECT:
-            self._exchange(self._now + 0.002)
+            self._breathe()
         self._now = now
         self.transport.rebase(now)
         self.clock = ChipClock(int(self.answer["clock"]))
@@ -129,7 +122,8 @@ class LiveAvr:
     def close(self) -> None:
         """Stop, drives off, disconnect."""
         self.session.halt(drives_off=True)
-        self._exchange(self._now + 0.005)
+        with suppress(LinkError):  # nobody is there any more
+            self._exchange(self._now + 0.005)
         self.transport.close()
 
     def poll(self, now: float) -> Report:
@@ -284,6 +278,12 @@ class LiveAvr:
         due = {name: value for at, name, value in self._timed if self._maker.tick(at) <= tick}
         return self.wiring.levels(self.outputs | due)
 
+    def _breathe(self) -> None:
+        """Let two thousandths of a second pass."""
+        self._exchange(self._now + 0.002)
+        if not self.transport.stride:
+            time.sleep(0.002)
+
     def _exchange(self, now: float) -> None:
         """Let bytes pass until ``now``."""
         came = self.transport.exchange(self.session.outgoing(self._now), now)
@@ -299,7 +299,7 @@ class LiveAvr:
     def _greeted(self, answer: Any) -> None:  # noqa: ANN401 - a numpy record has no type of its own
         name = bytes(answer["board"]).rstrip(b"\0").decode("ascii", "replace")
         if name != self.board.name:
-            raise RemoteProtocolError(f"the board says it is {name!r}, not {self.board.name!r}")
+            raise RemoteProtocolError(f"the board is {name}, not {self.board.name}", hint=f"Say --board {name}.")
         self.answer = answer
 
     def _told(self, told: Told) -> None:
@@ -346,8 +346,8 @@ class LiveAvr:
         """Note that the chip has stopped, by itself or as it was told: what it held is gone."""
         self.session.forget()
         self._stopping = False
-        if cause in _TROUBLES:
-            self._troubles.append(Trouble(cause=_TROUBLES[cause]))
+        if cause in TROUBLES:
+            self._troubles.append(Trouble(cause=TROUBLES[cause]))
         if cause == "estop":
             self._enabled = False
         self._compare((self._commanded() - self._maker.offset) * self._scale)

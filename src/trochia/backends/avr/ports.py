@@ -17,6 +17,7 @@ import serial
 from serial.tools import list_ports
 
 from trochia.backends.avr.images import BAUDS
+from trochia.backends.avr.troubles import GRBL, described
 from trochia.errors import LinkError
 from trochia.kernels.link import ANSWER, HELLO, SCHEMA, TYPES, FrameReader, frame
 
@@ -27,7 +28,6 @@ BOOTS = 2.1  #: a board's bootloader may take that long to let go after a reset 
 ANSWERS = 0.8  #: how long a hello is repeated at each baud rate [s]
 EVERY = 0.1  #: between questions [s]
 _ACTS = frozenset((*b"~!?$\r\n\x18", *range(0x80, 0x100)))  # bytes that GRBL acts upon
-_GRBL = re.compile(rb"Grbl ?[\w.]*|<(?:Idle|Run|Hold|Jog|Alarm|Door|Check|Home|Sleep)[|:][^>\r\n]*>")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -109,7 +109,7 @@ def _asked(line: serial.Serial, port: str, boots: float, clock: Callable[[], flo
     while clock() < end:
         line.write(b"?")
         heard += _listen(line, EVERY)
-        if (spoken := _GRBL.search(heard)) is not None:
+        if (spoken := GRBL.search(heard)) is not None:
             heard += _listen(line, EVERY)
             banner = re.search(rb"Grbl [^\r\n]*", heard)
             said = (banner or spoken)[0].decode("ascii", "replace")
@@ -139,16 +139,3 @@ def _ours(port: str, baud: int, answer: Any) -> Found:  # noqa: ANN401 - a numpy
     if schema != SCHEMA:
         text += f"; this program speaks {SCHEMA:08x}: write its image with `trochia flash {board}`"
     return Found(port=port, kind="trochia", text=text, board=board, baud=baud, schema=schema)
-
-
-def described(heard: bytes) -> str:
-    """Return what bytes of a stranger look like."""
-    if not heard:
-        return "nothing answers"
-    if _GRBL.search(heard):
-        return "a GRBL board is there (`trochia run --backend grbl`)"
-    plain = sum(32 <= byte < 127 or byte in b"\r\n\t" for byte in heard)
-    if plain >= 0.9 * len(heard):
-        first = heard.decode("ascii", "replace").strip().splitlines()
-        return f"it speaks, but neither our protocol nor GRBL's: {(first or [''])[0][:60]!r}"
-    return f"{len(heard)} bytes came that make no sense: another baud rate, or another firmware"

@@ -25,6 +25,7 @@ from trochia.errors import LocalProtocolError, VersionMismatch
 from trochia.kernels.link import ACK, ANSWER, HELLO, LOOSE, SCHEMA, STATUS, TYPES, FrameReader, frame
 
 PATIENCE = 0.5  #: of the host [s]
+KEPT = 200  #: bytes of what is not understood
 WINDOW = 120  #: bytes on their way, at most: the chip's receiver holds 127
 _NAMES = {value: name for name, value in TYPES.items() if name != "loose"}
 _SPAN = TYPES["span"]
@@ -84,12 +85,15 @@ class Session:
         Frames from the chip that were broken.
     repeated
         Orders that had to be sent again.
+    strange
+        The first bytes that came before the chip answered.
     """
 
     def __init__(self, baud: int = 115_200, *, seed: int = 0) -> None:
         self._session = seed & 255
         self.state = "closed"
         self.broken = self.repeated = 0
+        self.strange = b""
         self._retry = 0.02 + 4000.0 / baud
         self._reader = FrameReader()
         self._orders: deque[_Order] = deque()
@@ -123,7 +127,7 @@ class Session:
         self._orders.clear()
         self._loose.clear()
         self._next = self._taken = 0
-        self.state, self._heard, self._greeted = "greeting", now, now
+        self.state, self._heard, self._greeted, self.strange = "greeting", now, now, b""
         self._loose.append(b"\0" + self._hello)
 
     def order(self, kind: str, payload: bytes = b"") -> int:
@@ -196,6 +200,8 @@ class Session:
             When the chip was compiled with another schema.
         """
         events: list[Event] = []
+        if self.state == "greeting":
+            self.strange = (self.strange + data)[:KEPT]
         for got in self._reader.feed(data):
             if got.kind < 0:
                 self.broken += 1

@@ -1,0 +1,160 @@
+"""A line that goes wrong: one clear message each, through a real pseudo-terminal, the image on the simulated chip."""
+
+from __future__ import annotations
+
+import itertools
+import time
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+import trochia
+from trochia.backends.avr.live_avr import LiveAvr
+from trochia.backends.avr.transports import SerialTransport
+from trochia.backends.live import Orders
+from trochia.backends.segments import sampled
+from trochia.errors import LinkError, LinkTimeout, RemoteProtocolError, VersionMismatch
+from trochia.kernels.link import ANSWER, CAUSES, SCHEMA, TYPES, FrameReader, frame
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from trochia.machine.machine import Machine
+
+
+@pytest.fixture
+def machine() -> Machine:
+    return replace(trochia.load("reference-mill"), io=())
+
+
+@pytest.fixture
+def connect(machine: Machine, request: pytest.FixtureRequest) -> Callable[..., LiveAvr]:
+    """Opens a port with a board of a name on it."""
+
+    def begin(board: Any, *, name: str = "uno-stepdir", baud: int = 115_200) -> LiveAvr:
+        made = LiveAvr(machine, SerialTransport(str(board.link), baud=baud), board=name)
+        request.addfinalizer(made.transport.close)
+        made.open(time.monotonic())
+        return made
+
+    return begin
+
+
+def test_a_port_that_is_not_there():
+    with pytest.raises(LinkError, match="the port /dev/not-there cannot be opened") as caught:
+        SerialTransport("/dev/not-there")
+    assert "trochia boards" in str(caught.value)
+
+
+def test_two_hosts(plug: Callable[..., Any], connect: Callable[..., LiveAvr]):
+    board = plug("uno-stepdir")
+    connect(board)
+    with pytest.raises(LinkError, match="another program may have it open"):
+        SerialTransport(str(board.link))
+
+
+def test_another_board(plug: Callable[..., Any], connect: Callable[..., LiveAvr]):
+    with pytest.raises(RemoteProtocolError, match="the board is uno-stepdir, not mega-stepdir") as caught:
+        connect(plug("uno-stepdir"), name="mega-stepdir")
+    assert "--board uno-stepdir" in str(caught.value)
+
+
+def test_another_version(plug: Callable[..., Any], connect: Callable[..., LiveAvr]):
+    reader, told = FrameReader(), np.zeros((), ANSWER)
+    told["schema"] = 0x12345678
+
+    def answer(came: bytes) -> bytes:
+        return b"".join(frame(0, TYPES["answer"], told.tobytes()) for _ in reader.feed(came))
+
+    with pytest.raises(VersionMismatch, match=f"schema 12345678, this program {SCHEMA:08x}") as caught:
+        connect(plug(answer=answer))
+    assert "trochia flash" in str(caught.value)
+
+
+def test_another_baud_rate(plug: Callable[..., Any], connect: Callable[..., LiveAvr]):
+    with pytest.raises(LinkTimeout, match="no board with Trochia's image answers") as caught:
+        connect(plug("uno-stepdir", baud=1_000_000))
+    assert "baud rate" in str(caught.value)
+
+
+noise = itertools.cycle(np.random.default_rng(3).bytes(997))
+
+
+@pytest.mark.parametrize(
+    ("answer", "text"),
+    [
+        (lambda _came: b"", "nothing answers"),
+        (lambda _came: bytes(itertools.islice(noise, 40)), "make no sense: another baud rate, or another firmware"),
+        (lambda came: b"\r\nGrbl 1.1h ['$' for help]\r\n" if came else b"", "a GRBL board is there"),
+        (lambda came: b"echo:Unknown command\n" if came else b"", "neither our protocol nor GRBL's: 'echo:Unknown"),
+    ],
+)  # fmt: skip
+def test_strangers(
+    plug: Callable[..., Any], connect: Callable[..., LiveAvr], answer: Callable[[bytes], bytes], text: str
+):
+    with pytest.raises(LinkTimeout) as caught:
+        connect(plug(answer=answer))
+    assert text in str(caught.value)
+
+
+def feed(backend: LiveAvr, machine: Machine) -> float:
+    """Start a motion of two seconds; returns how far X goes."""
+    plan = trochia.plan(trochia.gcode("G1 G21 X20 F600\nM2\n", machine), machine).trajectory
+    times = np.linspace(0.0, plan.duration, round(plan.duration / 0.005))
+    now = time.monotonic()
+    backend.order(Orders(enable=True), now)
+    slew = np.full(len(times) - 1, 4.0)
+    backend.order(Orders(segments=sampled(plan, machine.kinematics.matrix, times, slew)), now)
+    return 20.0
+
+
+def poll(backend: LiveAvr, until: Callable[[Any], bool], patience: float = 20.0) -> Any:
+    end = time.monotonic() + patience
+    while True:
+        report = backend.poll(time.monotonic())
+        if until(report):
+            return report
+        assert time.monotonic() < end, report
+        time.sleep(0.005)
+
+
+def test_a_motion_through_a_terminal_in_real_time(
+    plug: Callable[..., Any], connect: Callable[..., LiveAvr], machine: Machine
+):
+    backend = connect(plug("uno-stepdir"))
+    way = feed(backend, machine)
+    report = poll(backend, lambda now: now.still and now.executed > 0.1)
+    assert report.commanded[0] == pytest.approx(way)
+    assert not report.troubles
+    poll(backend, lambda _now: backend.status["state"] == 0)  # the report runs ahead of the last status
+    assert backend.status["position"][0] == round(way * 200)
+
+
+def test_a_cable_pulled_in_motion_and_put_back(
+    plug: Callable[..., Any], connect: Callable[..., LiveAvr], machine: Machine
+):
+    board = plug("uno-stepdir")
+    backend = connect(board)
+    feed(backend, machine)
+    poll(backend, lambda now: now.commanded[0] > 3.0)
+    board.pull()
+    with pytest.raises(LinkError, match=r"is gone: .*") as caught:
+        poll(backend, lambda _now: False)
+    assert "Is the cable in?" in str(caught.value)
+    backend.close()
+    board.replug()  # the chip stood still meanwhile: for it the silence begins now
+    silent = board.board.at + 1.0
+    while board.board.at < silent:
+        time.sleep(0.01)
+    steps = np.concatenate(board.board.runs)
+    steps = steps[(steps["kind"] == 1) & (steps["unit"] == b"D") & (steps["line"] == 2) & (steps["value"] == 1)]
+    again = connect(board)
+    position = int(again.status["position"][0])
+    assert (again.status["state"], CAUSES[int(again.status["cause"])]) == (3, "silence")
+    assert position == len(steps)  # it has kept count
+    assert 600 < position < 4000
+    gaps = np.diff(steps["cycle"].astype(np.int64))
+    assert gaps[-3:].min() > 1.5 * np.median(gaps)  # it braked
+    assert poll(again, lambda _now: True).still
