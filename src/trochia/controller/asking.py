@@ -45,7 +45,7 @@ def go_on(it: Controller, job: Job) -> None:
         what = "touched nothing" if asks.toward else "did not come clear"
         _fail(it, Cause.PROBE, f"line {asks.line}: the probe {what} up to the move's end")
         return
-    if made.name != MDI:
+    if made.name != MDI and not it.lock.shut:
         it.note("answer", **entry_of(answer))
     try:
         ready = it.readier.onward(made, answer, at=it.position(), exact=job.by_block)

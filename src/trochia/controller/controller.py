@@ -19,6 +19,7 @@ from trochia.controller.handlers import HANDLERS
 from trochia.controller.interrupted import Interrupted, work_entry
 from trochia.controller.job import BLOCK_END, Job
 from trochia.controller.jog import Jog
+from trochia.controller.lock import Lock
 from trochia.controller.panel import Watch
 from trochia.controller.readying import MDI, Readier
 from trochia.controller.states import MOVING, TABLE, Event, State, legal
@@ -75,8 +76,9 @@ class Controller:
         self.activity: Activity | None = None
         self.request: Request | None = None
         self.hooked: frozenset[int] = frozenset()  # codes M100 to M199 that have programs
-        self.hook = ""  # the one whose program runs
+        self.hook = self._said = ""  # the one whose program runs; what the program has said last
         self.panel = Watch(machine.panel)
+        self.lock = Lock(machine.servo_period)
         self.asked = 0.0  # when a command came last [s]
         self.resume_at: float | None = None  # when a job is resumed whose spindle has to get to its speed first [s]
         self._spindle_stopped = False
@@ -111,7 +113,7 @@ class Controller:
 
     def step(self, now: float, report: Report) -> list[Orders]:
         """Take the backend's report of now and return what to tell it, in order.  A report is taken once."""
-        self.report = report
+        self.report = report = self.lock.seen(report)
         for trouble in report.troubles:
             self.fault(trouble)
         for trouble in self._guards.troubles(report, homing=self.state is State.HOMING):
@@ -132,7 +134,7 @@ class Controller:
         orders, self.pending = self.pending, []
         if self.activity is not None:
             orders += self.activity.feed(self.report)
-        return orders
+        return self.lock.kept(orders)
 
     def status(self, now: float) -> Status:
         """Return everything there is to know now."""
@@ -145,7 +147,7 @@ class Controller:
             alarms=tuple(self.alarms.latched), speed=float(np.linalg.norm(self.velocity)), rate=report.rate,
             beam=report.beam, armed=self.lightable, spindle=report.outputs.get("spindle", 0.0),
             flood=bool(report.outputs.get("flood")), mist=bool(report.outputs.get("mist")), tool=self.work.tool,
-            system=self.work.active, io=io_of(report), queued_s=report.queued,
+            system=self.work.active, io=io_of(report), queued_s=report.queued, message=self._message(),
         )  # fmt: skip
 
     # -- what handlers use
@@ -247,7 +249,7 @@ class Controller:
     def end(self, *, whole: bool) -> None:
         """Be no longer busy; a program that has not come to its end can be gone on with."""
         made, job = self.running, self.activity
-        if made is not None and isinstance(job, Job):
+        if made is not None and isinstance(job, Job) and not self.lock.shut:
             point = job.point(self.report)
             self.note("end", name=made.name, whole=whole, line=self.report.line, **point)
             if made.name != MDI and not whole:
@@ -346,6 +348,12 @@ class Controller:
             self.work = self.running.work
         self.end(whole=whole)
 
+    def _message(self) -> str:
+        """Return what the program has said last."""
+        if isinstance(self.activity, Job):
+            self._said = self.activity.doings.last_words
+        return self._said
+
     def _program(self) -> ProgramStatus | None:
         if self.running is not None and isinstance(self.activity, Job):
             line, done = self.activity.place(self.report)
@@ -360,7 +368,7 @@ class Controller:
     def _point(self, now: float) -> None:
         """Note where the machine is, while it moves and once when it has come to rest."""
         moving = self.state in MOVING
-        if now - self._pointed < POINT - 1e-9 or not (moving or self._moved):
+        if now - self._pointed < POINT - 1e-9 or not (moving or self._moved) or self.lock.shut:
             return
         self._pointed, self._moved = now, moving
         data: dict[str, object] = {"line": self.report.line, "position": self.position()}

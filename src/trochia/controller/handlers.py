@@ -148,9 +148,14 @@ def answer(it: Controller, command: c.Answer, now: float) -> str:
 
 def switches(it: Controller, command: c.Switches, _now: float) -> str:
     """Set the operator's switches."""
-    if command.machine_lock:
-        raise LocalProtocolError("this controller cannot keep the axes still while a program runs yet",
-                                 hint="`trochia simulate` shows what a program does without a machine.")  # fmt: skip
+    lock = command.machine_lock
+    if lock is not None and lock != it.switches.machine_lock:
+        if it.activity is not None or not it.report.still:
+            raise LocalProtocolError("the machine lock is turned at rest only", hint="Wait for the end, or abort.")
+        if lock:
+            it.lock.shut_at(it.report)
+        else:
+            it.report = it.lock.open(it.report)
     given = {name: getattr(command, name) for name in it.switches.__struct_fields__}
     it.switches = msgspec.structs.replace(it.switches, **{n: v for n, v in given.items() if v is not None})
     return "" if it.state is State.IDLE else "switches act from the next start on"
@@ -220,6 +225,8 @@ def jog_to(it: Controller, command: c.JogTo, now: float) -> str:
 
 def home(it: Controller, command: c.Home, _now: float) -> str:
     """Find the reference of axes."""
+    if it.lock.shut:
+        raise LocalProtocolError("nothing is found under the machine lock", hint="Turn it off first.")
     names = command.axes or tuple(axis.name for axis in it.machine.axes)
     it.begin(Homing(it, tuple(_axis(it, name) for name in names)))
     return ""

@@ -17,7 +17,7 @@ from trochia.controller.job import Job, Options
 from trochia.controller.readying import MDI
 from trochia.controller.rerun import entry, move_of_line
 from trochia.errors import LocalProtocolError, OutOfTravelError
-from trochia.program import AXES
+from trochia.program import AXES, Probe
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -93,7 +93,7 @@ def _go(it: Controller, made: Ready, *, block_by_block: bool, inside: Entry | No
     it.begin(job)
     it.running = made
     it.pending.append(Orders(lit=it.lightable and not it.switches.dry_run, watch=()))
-    if made.name != MDI:
+    if made.name != MDI and not it.lock.shut:
         it.interrupted = None
         start = dict(zip(AXES, (float(at) for at in made.start), strict=True))
         it.note("job", name=made.name, program=made.text, start=start, work=work_entry(made.found),
@@ -107,6 +107,8 @@ def _asked(it: Controller, made: Ready, *, exact: bool = False) -> Ready:
         return made
     check_known(it)
     check(made.plan.program, it.machine)
+    if it.lock.shut and any(isinstance(act, Probe) for act in made.plan.program.actions):
+        raise LocalProtocolError("nothing is probed under the machine lock", hint="Turn it off first.")
     return it.readier.ready(made.text, made.name, work=it.work, at=it.position(), block_delete=made.block_delete,
                             exact=exact, answers=())  # fmt: skip
 

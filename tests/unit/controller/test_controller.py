@@ -343,12 +343,6 @@ def test_what_cannot_be_run_live_is_refused_before_anything_moves(bench, mill: M
     assert b.at("X") == 0.0
 
 
-def test_a_switch_without_effect_is_refused(bench, mill: Machine) -> None:
-    answer = bench(mill).on().command(c.Switches(machine_lock=True))
-    assert not answer.ok
-    assert "simulate" in answer.reason
-
-
 def test_a_deep_queue_is_filled_turn_by_turn(bench, mill: Machine) -> None:
     b = bench(mill)
     b.twin.ahead = b.runtime.controller.ahead = 0.6

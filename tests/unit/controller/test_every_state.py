@@ -86,6 +86,7 @@ COMMANDS = st.one_of(
         single_block=st.none() | st.booleans(),
         optional_stop=st.none() | st.booleans(),
         dry_run=st.none() | st.booleans(),
+        machine_lock=st.none() | st.booleans(),
     ),
     st.builds(c.WorkZero, axes=st.dictionaries(AXES, st.just(1.0), max_size=1)),
     st.builds(c.SetOutput, name=st.sampled_from(["lamp", "horn"]), value=st.just(1.0)),
@@ -181,6 +182,7 @@ class EveryState(RuleBasedStateMachine):
                 if self.it.state not in MOVING:
                     break
         assert self.it.state is State.IDLE, self.it.alarms.latched
+        self.command(c.Switches(machine_lock=False))
         self.command(c.Home())
         for _ in range(12000):
             self.tick()
