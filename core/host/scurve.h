@@ -14,6 +14,7 @@ typedef struct {
     double free;                     /* v at which turning leaves nothing; infinite on lines */
     double along_a, bend_a;          /* greatest |q'| / A, |q''| / A */
     double along_j, bend_j, twist_j; /* greatest |q'| / J, 3 |q''| / J, |q'''| / J */
+    double most_a, most_j;           /* 1 / along_a and 1 / along_j: on a line, and where nothing turns */
     /* what -x'' along x' is more than the line's at its start and its end: a is 0 inside, and that times v^2 (negative
      * before, positive after) on the lines beside it */
     double kick_in, kick_out;

@@ -45,7 +45,7 @@ static double leave_straight(const trochia_track *back, const trochia_leg *leg, 
     const trochia_stretch *stretch = &back->stretches[leg->stretch];
     if (stretch->free < INFINITY)
         return -1.0;
-    double jerk = 1.0 / stretch->along_j, gain = 1.0 + leg->j / jerk, half = leg->a * gain;
+    double jerk = stretch->most_j, gain = 1.0 + leg->j / jerk, half = leg->a * gain;
     double off = v - leg->v - 0.5 * leg->a * leg->a / jerk, root = half * half + 2.0 * leg->j * gain * off;
     if (!(root > 0.0))
         return -1.0;

@@ -207,6 +207,8 @@ static void load(const trochia_segment *segment, const double *pool, const troch
     double feed = segment->speed_limit / (stretched > 1.0 + 1e-12 ? stretched : 1.0);
     stretch->over = segment->speed_limit < INFINITY && stretch->ceiling < segment->speed_limit * (1.0 - 1e-9);
     stretch->ceiling = trochia_smaller(stretch->ceiling, feed);
+    stretch->most_a = 1.0 / stretch->along_a;
+    stretch->most_j = 1.0 / stretch->along_j;
     stretch->free = INFINITY;
     if (stretch->bend_a > 0.0)
         stretch->free = 1.0 / sqrt(stretch->bend_a);

@@ -14,7 +14,7 @@ static const double LITTLE_A = 0.75;   /* a budget that falls no lower until the
 static const double LEAST_JERK = 1e-6; /* part of its jerk that turning must leave to an arrest */
 /* An arrest that is too fast by less is followed to its end: by rounding of one that is not. */
 static const double GRAZED = 1e-9;
-static const double CLOSE_TIME = 1e-9;
+static const double CLOSE_TIME = 1e-5;
 enum { STEPS = 7 };
 
 static double place(const trochia_track *track, int64_t i, double rem) {
@@ -30,9 +30,10 @@ double trochia_time_over(double v, double a, double j, double rem, double most) 
     if (j > 0.0 && !(j * t * t < v + root))
         t = trochia_smaller(t, cbrt(6.0 * rem / j));
     for (int k = 0; k < 50; k++) {
-        double step = (trochia_way_after(v, a, j, t) - rem) / trochia_speed_after(v, a, j, t);
+        double off = trochia_way_after(v, a, j, t) - rem, speed = trochia_speed_after(v, a, j, t);
+        double step = off * speed / (speed * speed - 0.5 * off * (a + j * t));
         t = trochia_smaller(t - step, most);
-        if (!(fabs(step) > CLOSE_TIME * t)) /* the next step would be the square of that */
+        if (!(fabs(step) > CLOSE_TIME * t)) /* the next step would be the cube of that */
             break;
     }
     return t;
@@ -64,7 +65,7 @@ static double arrest_leg(const trochia_stretch *stretch, double *rem, double v, 
     *high = reach;
     if (free < INFINITY)
         *high = trochia_smaller(reach, v < free ? sqrt(v * v + SHARE * (free * free - v * v)) : v);
-    double jerk = free < INFINITY ? trochia_jerk_left(stretch, *high, a) : 1.0 / stretch->along_j;
+    double jerk = free < INFINITY ? trochia_jerk_left(stretch, *high, a) : stretch->most_j;
     if (!(jerk > 0.0))
         return jerk;
     double rise = *high - v, root = a * a - 2.0 * jerk * rise;
@@ -83,8 +84,8 @@ static double arrest_leg(const trochia_stretch *stretch, double *rem, double v, 
  * lost of that faster than a falls. */
 static double arrest_most(const trochia_stretch *stretch, double v, double a, double jerk, double high, double time) {
     if (!(stretch->free < INFINITY))
-        return 1.0 / stretch->along_a;
-    double lost = 2.0 * stretch->bend_a * high * a / stretch->along_a - jerk;
+        return stretch->most_a;
+    double lost = 2.0 * stretch->bend_a * high * a * stretch->most_a - jerk;
     return trochia_larger(trochia_acceleration_left(stretch, high),
                           trochia_acceleration_left(stretch, v) - trochia_larger(lost, 0.0) * time);
 }
@@ -164,7 +165,7 @@ static trochia_budget budget_at(const trochia_stretch *stretch, double v) {
         return (trochia_budget){0.0, 0.0};
     if (cross * a > 0.5 * rest)
         a = 0.5 * rest / cross;
-    return (trochia_budget){a, (rest - cross * a) / stretch->along_j};
+    return (trochia_budget){a, (rest - cross * a) * stretch->most_j};
 }
 
 /* Up to which speed the budget of that speed is to be used, from v on. */

@@ -51,7 +51,7 @@ static inline double trochia_speed_after(double v, double a, double j, double t)
 }
 
 static inline double trochia_way_after(double v, double a, double j, double t) {
-    return t * (v + t * (0.5 * a + t * j / 6.0));
+    return t * (v + t * (0.5 * a + t * j * (1.0 / 6.0)));
 }
 
 /* A stretch that is passed at an even speed. */
@@ -82,11 +82,11 @@ static inline double trochia_exit(const trochia_track *track, int64_t i) {
 }
 
 static inline double trochia_acceleration_left(const trochia_stretch *stretch, double v) {
-    return (1.0 - stretch->bend_a * v * v) / stretch->along_a;
+    return (1.0 - stretch->bend_a * v * v) * stretch->most_a;
 }
 
 static inline double trochia_jerk_left(const trochia_stretch *stretch, double v, double a) {
-    return (1.0 - stretch->twist_j * v * v * v - stretch->bend_j * v * a) / stretch->along_j;
+    return (1.0 - stretch->twist_j * v * v * v - stretch->bend_j * v * a) * stretch->most_j;
 }
 
 /* Time to go `rem` under constant jerk with a >= 0 all the time, when by `most` that is reached. */
