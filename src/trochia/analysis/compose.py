@@ -78,11 +78,6 @@ def _shaping(plan: Plan) -> str | None:
     return None if plan.deviation is None else f"{words(plan.machine)}, {plan.deviation.peak:.3f} mm off the path"
 
 
-def load_channel(joint: str) -> str:
-    """Return the channel of a joint's load angle."""
-    return f"joint.{joint}.load_angle"
-
-
 def _axis(plan: Plan, axis: Axis) -> AxisSummary:
     peaks = plan.trajectory.peaks[axis.name]
     low, high = plan.extents[axis.name]
@@ -140,8 +135,16 @@ def _samples(plan: Plan, recording: Recording) -> MotionSamples:
         return np.asarray(recording[name][::step][keep], dtype=np.float64)
 
     names = [axis.name for axis in plan.machine.axes]
-    rows = zip(plan.machine.joints, np.abs(plan.machine.kinematics.matrix), strict=True)
-    joints = tuple((joint.name, int(row.argmax())) for joint, row in rows if load_channel(joint.name) in recording)
+
+    def of_joints(quantity: str) -> tuple[NDArray[np.float64] | None, tuple[tuple[str, int], ...]]:
+        """Return a quantity (m, q) of the joints that have it, with their names and the axis each moves most."""
+        rows = zip(plan.machine.joints, np.abs(plan.machine.kinematics.matrix), strict=True)
+        found = tuple((joint.name, int(row.argmax())) for joint, row in rows
+                      if f"joint.{joint.name}.{quantity}" in recording)  # fmt: skip
+        table = [channel(f"joint.{name}.{quantity}") for name, _ in found]
+        return (np.stack(table, axis=1) if table else None), found
+
+    (load_angle, load_joints), (current, current_joints) = of_joints("load_angle"), of_joints("current")
     return MotionSamples(
         time=time,
         position=np.stack([channel(f"{name}.commanded") for name in names], axis=1),
@@ -151,6 +154,8 @@ def _samples(plan: Plan, recording: Recording) -> MotionSamples:
         line=channel("path.line").astype(np.int64),
         actual=np.stack([channel(f"{name}.actual") for name in names], axis=1),
         contour_error=contour_distances(recording)[::step][keep],
-        load_angle=np.stack([channel(load_channel(name)) for name, _ in joints], axis=1) if joints else None,
-        load_joints=joints,
+        load_angle=load_angle,
+        load_joints=load_joints,
+        current=current,
+        current_joints=current_joints,
     )

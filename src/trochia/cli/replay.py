@@ -48,11 +48,15 @@ folder = click.Path(path_type=Path)
               help="Write the samples as CSV; of two, those of OTHER.")  # fmt: skip
 @click.option("--picture", type=click.Path(dir_okay=False, path_type=Path), metavar="FILE",
               help="Draw it over time, as PNG; of two, how far they are apart.")  # fmt: skip
+@click.option("--contouring", is_flag=True,
+              help="Of one: how well it was followed: spikes, spectra, repeatability, resolution, circle.")  # fmt: skip
+@click.option("-o", "--plot", type=click.Path(dir_okay=False), metavar="FILE.png|FILE.svg|FILE.html",
+              help="Draw that.")  # fmt: skip
 @click.option("--verify", is_flag=True, help="Read every sample and hold it against the checksum.")
 @as_json
 def command(
     *, recording: Path, other: Path | None, align: str, tolerance: float | None, csv: Path | None,
-    picture: Path | None, verify: bool, as_json: bool,
+    picture: Path | None, contouring: bool, plot: str | None, verify: bool, as_json: bool,
 ) -> None:  # fmt: skip
     """Look at a recording; with OTHER, tell how far that is from it: channel by channel, when, at which line.
 
@@ -60,16 +64,25 @@ def command(
     to its last whole sample.  `path` is the distance from the way of FOLDER, whenever it was gone: holds and overrides
     do not matter to it.
 
+    With --contouring one recording tells how well it was followed: what a machine did, or its twin before it runs.
+
     Example: trochia replay out/recording run --tolerance "10 um"
     """
     if tolerance is not None and other is None:
         raise click.UsageError("--tolerance holds OTHER against FOLDER: give both")
+    if contouring and (other is not None or picture is not None):
+        raise click.UsageError("--contouring is of one recording, and its picture by -o")
+    if plot is not None and not contouring:
+        raise click.UsageError("-o draws what --contouring tells")
     from trochia.recorder import read, to_csv  # noqa: PLC0415 - `trochia --help` must stay light
 
     one = read(recording, verify=verify)
     second = None if other is None else read(other, verify=verify)
     if csv is not None:
         to_csv(second or one, csv)
+    if contouring:
+        _study(one, plot, as_json=as_json)
+        return
     if second is None:
         _single(one, picture, as_json=as_json)
         return
@@ -87,6 +100,26 @@ def _single(one: Recording, picture: Path | None, *, as_json: bool) -> None:
 
         draw(picture, one)
     print_json(seen.figures()) if as_json else _show(seen)
+
+
+def _study(one: Recording, plot: str | None, *, as_json: bool) -> None:
+    """Tell how well one recording was followed."""
+    from trochia.analysis.contouring import study  # noqa: PLC0415
+    from trochia.analysis.contouring.page import study_picture, study_rows  # noqa: PLC0415
+    from trochia.cli.axis_options import write_plot  # noqa: PLC0415
+
+    found = study(one)
+    rows = study_rows(found)
+    if plot is not None:
+        title = f"{one.machine}, {Path(one.program).name or 'unnamed'}: how well it was followed"
+        write_plot(plot, title, lambda form: study_picture(one, found, title, form=form), rows)
+    if as_json:
+        print_json(found.figures() | {"files": [] if plot is None else [plot]})
+        return
+    for name, value in rows:
+        click.echo(f"  {name:<22} {value}")
+    if plot is not None:
+        click.echo(f"wrote {plot}")
 
 
 def _show(seen: Look) -> None:

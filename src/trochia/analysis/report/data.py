@@ -117,6 +117,8 @@ class MotionSamples:
         Of the steppers that were physics (m, q) [electrical degree], or None.
     load_joints
         Their names, and the number of the axis each moves most.
+    current, current_joints
+        The same of servos that were physics: current of their motors (m, q) [A].
     """
 
     time: NDArray[np.float64]
@@ -129,11 +131,13 @@ class MotionSamples:
     contour_error: NDArray[np.float64] | None = None
     load_angle: NDArray[np.float64] | None = None
     load_joints: tuple[tuple[str, int], ...] = ()
+    current: NDArray[np.float64] | None = None
+    current_joints: tuple[tuple[str, int], ...] = ()
 
     def __post_init__(self) -> None:
         tables = {"position": self.position, "velocity": self.velocity, "acceleration": self.acceleration}
         columns = {"speed": self.speed, "line": self.line, "actual": self.actual, "contour_error": self.contour_error,
-                   "load_angle": self.load_angle}  # fmt: skip
+                   "load_angle": self.load_angle, "current": self.current}  # fmt: skip
         _rows(self.time.shape[0], **tables, **columns)
         if self.time.shape[0] and not bool(np.all(np.diff(self.time) > 0)):
             raise ValueError("time must rise from sample to sample")

@@ -120,7 +120,9 @@ def _channels(samples: MotionSamples) -> Payload:
     tables = {"position": samples.position, "velocity": samples.velocity, "acceleration": samples.acceleration}
     if error is not None:
         tables["following"] = error
-    width = sum(table.shape[1] for table in tables.values()) + 4 + len(samples.load_joints)
+    width = (
+        sum(table.shape[1] for table in tables.values()) + 4 + len(samples.load_joints) + len(samples.current_joints)
+    )
     limit = min(SAMPLES, _NUMBERS // width)
 
     def column(values: NDArray[np.float64]) -> Payload:
@@ -129,10 +131,12 @@ def _channels(samples: MotionSamples) -> Payload:
     packed: Payload = {name: [column(values) for values in table.T] for name, table in tables.items()}
     packed["speed"] = column(samples.speed)
     packed["contour"] = None if contour is None else column(contour)
-    packed["load"] = None
-    if samples.load_angle is not None:
-        joints = zip(samples.load_joints, samples.load_angle.T, strict=True)
-        packed["load"] = [{"name": name, "axis": axis, "values": column(angle)} for (name, axis), angle in joints]
+    for key, joints, table in (("load", samples.load_joints, samples.load_angle),
+                               ("current", samples.current_joints, samples.current)):  # fmt: skip
+        packed[key] = None if table is None else [
+            {"name": name, "axis": axis, "values": column(values)}
+            for (name, axis), values in zip(joints, table.T, strict=True)
+        ]  # fmt: skip
     packed["time"] = pack(bucket_times(samples.time, limit), "f8")
     return packed
 

@@ -46,6 +46,10 @@ function chartSpecs(motion) {
     const series = channels.load.map((joint) => ({ ...joint, limit: MOST_LOAD_ANGLE }));
     specs.push({ title: "Load angle of the motors", unit: "° el.", digits: 1, oneSided: false, mapped: false, series });
   }
+  if (channels.current) {
+    const series = channels.current.map((joint) => ({ ...joint, limit: null }));
+    specs.push({ title: "Current of the motors", unit: "A", digits: 3, oneSided: false, mapped: false, series });
+  }
   return specs;
 }
 
