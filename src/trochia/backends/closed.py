@@ -17,6 +17,7 @@ import numpy as np
 
 from trochia.kernels.twin import TwinBlock, TwinJoint
 from trochia.machine.servos.drive import servo_drive
+from trochia.pulses.motor_way import MotorWay
 from trochia.servo.joint import JointServo, at_rest
 
 if TYPE_CHECKING:
@@ -87,11 +88,12 @@ class ClosedJoints:
     motion: Motion
     joints: dict[int, ClosedJoint]
     _done: dict[float, int] = field(default_factory=dict[float, int])
+    _ways: dict[float, MotorWay] = field(default_factory=dict[float, MotorWay])
 
     @classmethod
     def of(cls, machine: Machine, motion: Motion, *, slack: float) -> ClosedJoints:
         """Return them settled at the motion's start."""
-        start = machine.kinematics.matrix @ motion.position(np.zeros(1))[0]
+        start = MotorWay(machine, motion).at(np.zeros(1))[0]
         joints: dict[int, ClosedJoint] = {}
         for i, joint in enumerate(machine.joints):
             drive = servo_drive(machine, i)
@@ -106,8 +108,9 @@ class ClosedJoints:
             last = math.ceil(until / period) + 2
             if last <= first:
                 continue
+            way = self._ways.setdefault(period, MotorWay(self.machine, self.motion))
             ticks = period * np.arange(first - 1, last + 1, dtype=np.float64)
-            places = self.motion.position(np.clip(ticks, 0.0, self.motion.duration)) @ self.machine.kinematics.matrix.T
+            places = way.at(ticks)
             for i, joint in self.joints.items():
                 if joint.drive.period == period:
                     joint.follow(first, differences(places[:, i], period))

@@ -123,7 +123,8 @@ class LiveTwin:
             time=self._now, executed=executor.executed, rate=executor.rate if executor.moving else 0.0,
             queued=executor.queue.end - executor.executed if executor.moving else 0.0, commanded=executor.commanded,
             velocity=self._velocity, encoder=self.plant.encoder() + self._offset,
-            actual=self.plant.load + self._offset, enabled=self._enabled, beam=self._beam, line=self._line,
+            actual=self.plant.real(self.plant.load[None, :])[0] + self._offset, enabled=self._enabled,
+            beam=self._beam, line=self._line,
             inputs=self._read(), outputs=dict(self.outputs), troubles=troubles, caught=self._caught,
         )  # fmt: skip
 
@@ -236,7 +237,8 @@ class LiveTwin:
         beam = np.where(told.speeds.any(axis=1), told.powers, 0.0) if lit else np.zeros(told.ticks)
         self.tap(Ticks(
             period=self.machine.servo_period, executed=told.executed, commanded=told.commanded, velocity=told.speeds,
-            encoder=self.plant.measured + self._offset, actual=self.plant.loads + self._offset,
+            encoder=self.plant.measured + self._offset,
+            actual=self.plant.real(self.plant.loads) + self._offset,
             beam=beam.astype(np.float32), line=told.lines,
         ))  # fmt: skip
 
@@ -245,11 +247,12 @@ class LiveTwin:
         if self.tap is None:
             return
         joints = len(self._names)
+        loads = self.plant.loads if settling else np.tile(self.plant.load, (ticks, 1))
         self.tap(Ticks(
             period=self.machine.servo_period, executed=np.full(ticks, self._executor.executed),
             commanded=np.tile(self._executor.commanded, (ticks, 1)), velocity=np.zeros((ticks, joints)),
             encoder=(self.plant.measured if settling else np.tile(self.plant.encoder(), (ticks, 1))) + self._offset,
-            actual=(self.plant.loads if settling else np.tile(self.plant.load, (ticks, 1))) + self._offset,
+            actual=self.plant.real(loads) + self._offset,
             beam=np.zeros(ticks, np.float32), line=np.full(ticks, self._line, np.uint32),
         ))  # fmt: skip
 

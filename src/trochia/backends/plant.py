@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from trochia.backends.errors import with_errors
 from trochia.backends.live_servo import LiveServo
 from trochia.kernels.twin import TwinJoint
 from trochia.machine.servos.drive import servo_drive
@@ -86,6 +87,10 @@ class Plant:
                 self.lag[i] = abs(commanded[-1, i] - self.load[i])
         self.loads = loads
         return loads
+
+    def real(self, loads: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return where loads really are (ticks, joints): with the errors of screws and of axes that are not square."""
+        return with_errors(self._machine, loads)
 
     @property
     def restless(self) -> bool:

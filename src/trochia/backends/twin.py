@@ -3,7 +3,7 @@
 In: a motion and a machine.  Out: blocks of three independent signals, the commanded position, what the encoders count,
 and where the axes really are; ``signals.py`` has a row for each channel.
 
-``axes --kinematics--> joint command --motor--> motor --backlash--> load --pseudo-inverse--> axes``
+``axes --kinematics, corrections--> joint command --motor--> motor --backlash--> load --errors, inverse--> axes``
 
 An ideal stepper stands on the last step passed, an ideal servo on the nearest count of its encoder (on the load as on
 the motor: no loop is closed here); neither is late or loses anything, so what is left is resolution and lost motion.
@@ -15,16 +15,18 @@ loop lets it (``closed.py``).
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from trochia.backends.closed import ClosedJoints
+from trochia.backends.errors import with_errors
 from trochia.backends.physical import PhysicalJoints
 from trochia.backends.signals import Sampled, signals
 from trochia.errors import ConfigError
 from trochia.kernels.twin import TwinJoint
+from trochia.pulses.motor_way import MotorWay
 from trochia.pulses.steps import Motion as Stepped
 from trochia.recorder import Channel, Header
 
@@ -90,8 +92,9 @@ class Twin:
         """Yield the motion's samples at 0, 1, 2, … periods, up to the first at or after its end (there: the end)."""
         matrix = self.machine.kinematics.matrix
         inverse = np.linalg.pinv(matrix)
-        start = motion.position(np.zeros(1))[0] @ matrix.T
+        start = MotorWay(self.machine, motion).at(np.zeros(1))[0]
         joints = [self._joint(joint, at) for joint, at in zip(self.machine.joints, start, strict=True)]
+        way = MotorWay(self.machine, motion)
         recorded = self._signals(motion)
         real = self._steppers(motion)
         closed = ClosedJoints.of(self.machine, motion, slack=self.slack) if self._closed else None
@@ -102,7 +105,7 @@ class Twin:
             if first + BLOCK >= samples:
                 t[-1] = motion.duration
             commanded = motion.position(t)
-            wanted = commanded @ matrix.T
+            wanted = way.at(t)
             if real is not None:
                 real.feed(float(t[-1]) + self.tick)
             if closed is not None:
@@ -113,7 +116,11 @@ class Twin:
                 else joint.run(wanted[:, i])
                 for i, joint in enumerate(joints)
             ]  # fmt: skip
-            actual = np.stack([block.load for block in done], axis=1) @ inverse.T
+            loads = np.stack([block.load for block in done], axis=1)
+            erring = with_errors(self.machine, loads)
+            if erring is not loads:
+                done = [replace(block, load=erring[:, i]) for i, block in enumerate(done)]
+            actual = erring @ inverse.T
             block = Sampled(t=t, motion=motion, commanded=commanded, actual=actual, joints=done)
             yield {channel.name: take(block) for channel, take in recorded}
 

@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from queue import Empty, SimpleQueue
 from typing import TYPE_CHECKING
 
+from trochia.backends.compensated import compensated
 from trochia.backends.live import Orders, Trouble
 from trochia.controller.controller import Controller
 from trochia.controller.interrupted import interrupted, keep
@@ -77,7 +78,7 @@ class Runtime:
         self, backend: SegmentBackend, *, journal: Path | None = None, recordings: Path | None = None,
         work: WorkState | None = None, now: float = 0.0,
     ) -> None:  # fmt: skip
-        self.backend = backend
+        self.backend = backend = compensated(backend)
         self.controller = Controller(backend.machine, backend.open(now), latency=backend.latency,
                                      ahead=backend.ahead, work=work)  # fmt: skip
         self.load = Load()

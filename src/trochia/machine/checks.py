@@ -9,6 +9,7 @@ import numpy as np
 
 from trochia.errors import ConfigError
 from trochia.machine.axes import LETTERS, AxisKind
+from trochia.machine.corrections import check_corrections
 from trochia.machine.rates import joint_velocity, step_rate
 from trochia.units import did_you_mean
 
@@ -40,6 +41,7 @@ def check(machine: Machine) -> None:
                 raise ConfigError("missing: the profile s-curve needs it", key=f"axes.{axis.name}.jerk")
     _check_pins(machine)
     _check_switches(machine)
+    check_corrections(machine)
     _check_panel(machine)
 
 

@@ -23,7 +23,15 @@ if TYPE_CHECKING:
     from trochia.machine.schema import Key
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+\Z")
-_TABLES = ("path", "spindle", "beam", "probe", "panel")  #: records of a machine that are written as tables of their own
+_TABLES = (
+    "path",
+    "squareness",
+    "squareness_error",
+    "spindle",
+    "beam",
+    "probe",
+    "panel",
+)  #: records of a machine that are written as tables of their own
 
 
 def dumps(machine: Machine, *, comments: bool = False) -> str:

@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING, ClassVar
 
 from trochia.errors import ConfigError
 from trochia.machine.codecs import Quantity, Text, Whole
+from trochia.machine.compensation import Compensation
 from trochia.machine.drivers import DRIVERS, Driver, fed
 from trochia.machine.encoders import Encoder
+from trochia.machine.error_table import ErrorTable, TableOfErrors
 from trochia.machine.loads import JointLoad
 from trochia.machine.motors.catalogue import CatalogueStepper
 from trochia.machine.motors.library import motor as library_motor
@@ -117,6 +119,8 @@ class Joint:
     ----------
     backlash
         Lost motion on reversal [mm or degree].
+    screw_error, compensation
+        What the twin's joint errs by place, and what is corrected of backlash and screw.
     velocity, acceleration, jerk
         Limits of the joint itself, beside those of the axes [mm/s, mm/s², mm/s³, or degrees].
     following_error, following_warning
@@ -131,6 +135,13 @@ class Joint:
     encoder: Encoder | None = field(default=None, metadata=key(Record(Encoder), "what measures the position"))
     backlash: float = field(
         default=0.0, metadata=key(Quantity("length", motion=True), "lost motion on reversal", Bound.NOT_NEGATIVE)
+    )
+    screw_error: ErrorTable | None = field(
+        default=None,
+        metadata=key(TableOfErrors(), "how far beyond where it should be the load is, by place: what the twin has"),
+    )
+    compensation: Compensation | None = field(
+        default=None, metadata=key(Record(Compensation), "what is corrected of backlash and screw")
     )
     velocity: float | None = field(
         default=None, metadata=key(Quantity("velocity", motion=True), "limit of the joint itself", Bound.POSITIVE)

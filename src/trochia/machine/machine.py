@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from trochia.machine.axes import LETTERS, PathLimits
 from trochia.machine.checks import check
 from trochia.machine.codecs import Flag, Quantity, Text
+from trochia.machine.compensation import Squareness
 from trochia.machine.io import Beam, Spindle
 from trochia.machine.panel import Panel
 from trochia.machine.probe import Probe
@@ -46,6 +47,8 @@ class Machine:
         Whether all of M100 to M199 may be called.
     user_m_codes
         Folder of the programs of M100 to M199, relative to the machine file; None: nothing is run.
+    squareness, squareness_error
+        Angles between axes that are corrected, and those that the twin's axes have.
     profile
         Velocity profile the machine asks for, a name of :data:`PROFILES`; None leaves it to the planner.
 
@@ -93,6 +96,12 @@ class Machine:
     profile: str | None = field(
         default=None,
         metadata=key(Text(PROFILES), "velocity profile; without it s-curve where jerk is given, else trapezoid"),
+    )
+    squareness: Squareness | None = field(
+        default=None, metadata=key(Record(Squareness), "angles beyond 90 degrees that are corrected")
+    )
+    squareness_error: Squareness | None = field(
+        default=None, metadata=key(Record(Squareness), "angles beyond 90 degrees that the twin's axes have")
     )
     spindle: Spindle | None = field(default=None, metadata=key(Record(Spindle), "the spindle"))
     beam: Beam | None = field(default=None, metadata=key(Record(Beam), "a laser or the like"))

@@ -14,7 +14,9 @@ import numpy as np
 
 from trochia.errors import ConfigError
 from trochia.machine.acceleration import AccelerationCurve
+from trochia.machine.crossing import crossing_of
 from trochia.machine.rates import joint_velocity
+from trochia.machine.reserve import shares
 from trochia.machine.torque import drive
 
 if TYPE_CHECKING:
@@ -93,6 +95,7 @@ class Limits:
             own = _of_motor(machine, index)
             if own is not None:
                 rows[_key(row)] = own.tighten(rows.get(_key(row)))
+        rows = _reserved(rows, machine)
         return cls(
             names=tuple(row.name for row in rows.values()),
             matrix=np.array(list(rows), dtype=np.float64),
@@ -126,6 +129,18 @@ class _Row(NamedTuple):
                  min(self.jerk, other.jerk))  # fmt: skip
         return _Row(self.name if binds else other.name, *least, _lesser(self, other))
 
+    def scaled(self, velocity: float, acceleration: float, jerk: float) -> _Row:
+        """Return the same with factors on its limits."""
+        return _Row(self.name, velocity * self.velocity, acceleration * self.acceleration, jerk * self.jerk,
+                    _scaled(self.curve, velocity, acceleration))  # fmt: skip
+
+
+def _scaled(curve: AccelerationCurve | None, velocity: float, acceleration: float) -> AccelerationCurve | None:
+    """Return a curve of lower speeds and accelerations; None stays None."""
+    if curve is None:
+        return None
+    return AccelerationCurve(knots=tuple((velocity * v, acceleration * a) for v, a in curve.knots))
+
 
 def _lesser(one: _Row, other: _Row) -> AccelerationCurve | None:
     """Return the curve that keeps both rows' accelerations, or None where neither has one."""
@@ -134,6 +149,17 @@ def _lesser(one: _Row, other: _Row) -> AccelerationCurve | None:
     if one.curve is not None:
         return one.curve.capped(other.acceleration)
     return None if other.curve is None else other.curve.capped(one.acceleration)
+
+
+def _reserved(rows: dict[tuple[float, ...], _Row], machine: Machine) -> dict[tuple[float, ...], _Row]:
+    """Return rows with what correcting a machine's errors takes kept free: of all joints that move with a row."""
+    crossing = crossing_of(machine)
+    if crossing is None:
+        return rows
+    moved = machine.kinematics.matrix != 0.0
+    left = np.array(shares(machine, crossing.mix))
+    return {key: row.scaled(*left[(moved & (np.array(key) != 0.0)).any(axis=1)].min(axis=0).tolist())
+            for key, row in rows.items()}  # fmt: skip
 
 
 def _of_motor(machine: Machine, index: int) -> _Row | None:

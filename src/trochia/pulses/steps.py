@@ -17,6 +17,9 @@ import numpy as np
 
 from trochia.errors import ConfigError
 from trochia.kernels.steps import JointSteps
+from trochia.machine.crossing import crossing_of
+from trochia.pulses.corrected import CorrectedSteps, CorrectedWay
+from trochia.pulses.motor_way import MotorWay, Placed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -102,15 +105,32 @@ def step_blocks(
         raise ConfigError(f"a step clock has at least one tick a second, not {clock!r}")
     path, rows = trajectory.path, step_rows(machine)
     begins = np.floor(rows @ path.start + 0.5) if counts is None else counts
-    joints = [
+    joints: list[JointSteps] | list[CorrectedSteps] = [
         JointSteps(path.segments, path.pool, row, clock, int(begin)) for row, begin in zip(rows, begins, strict=True)
     ]
+    if crossing_of(machine) is not None:
+        joints = _corrected(trajectory, machine, clock, counts)
     for phases in trajectory.blocks():
         if phases.size:
             yield from _windows(phases, joints, clock)
 
 
-def _windows(phases: NDArray[np.void], joints: list[JointSteps], clock: int) -> Iterator[StepBlock]:
+def _corrected(
+    trajectory: Motion, machine: Machine, clock: int, counts: tuple[int, ...] | None
+) -> list[CorrectedSteps]:
+    """Return the steps of joints whose errors are corrected."""
+    if not isinstance(trajectory, Placed):
+        raise ConfigError("a motion of a machine whose errors are corrected must say where it is at any time")
+    way = MotorWay(machine, trajectory)
+    per_unit = np.array([float(joint.steps_per_unit or 0) for joint in machine.joints])
+    begins = np.floor(per_unit * way.at(np.zeros(1))[0] + 0.5) if counts is None else np.array(counts)
+    shared = CorrectedWay(way)
+    return [CorrectedSteps(shared, j, float(scale), clock, int(begins[j])) for j, scale in enumerate(per_unit)]
+
+
+def _windows(
+    phases: NDArray[np.void], joints: list[JointSteps] | list[CorrectedSteps], clock: int
+) -> Iterator[StepBlock]:
     """Yield a block of phases cut into windows."""
     for joint in joints:
         joint.load(phases)

@@ -11,7 +11,9 @@ import pytest
 from trochia.machine.acceleration import CurveOfAcceleration
 from trochia.machine.axes import Axis, PathLimits
 from trochia.machine.codecs import Exact, Flag, Number, Quantity, Ratio, Text, Whole
+from trochia.machine.compensation import Compensation, Squareness
 from trochia.machine.drivers import DRIVERS
+from trochia.machine.error_table import TableOfErrors
 from trochia.machine.homing import METHODS, Homing, LimitSwitch
 from trochia.machine.io import CHANNELS, ELECTRICAL, Beam, Channel, Spindle
 from trochia.machine.joints import MOTORS, Encoder, Joint, PulseTiming
@@ -31,7 +33,7 @@ TABLES = {
     "Top of the file": Machine, "path": PathLimits, "axes.X": Axis, "resonance": Resonance,
     "home": Homing, "limit_minus and limit_plus": LimitSwitch, "joints.X": Joint, "encoder": Encoder,
     "pulses": PulseTiming, "spindle": Spindle, "beam": Beam, "io.NAME": Channel, "probe": Probe, "part": Part,
-    "panel": Panel,
+    "panel": Panel, "compensation": Compensation, "squareness and squareness_error": Squareness,
     "catalogue": CatalogueStepper, "load": JointLoad,
 } | {f"motor, kind {kind}": cls for kind, cls in MOTORS.items()} | {
     f"transmission, kind {kind}": cls for kind, cls in TRANSMISSIONS.items()
@@ -43,7 +45,8 @@ TABLES = {
     f"catalogue, kind {kind}": cls for kind, cls in SERVO_MOTORS.items()
 }  # fmt: skip
 PLAIN = {Ratio: "exact number", Whole: "whole number", Number: "number", Flag: "true or false", Text: "text",
-         CurveOfAcceleration: "pairs of velocity and acceleration"}  # fmt: skip
+         CurveOfAcceleration: "pairs of velocity and acceleration",
+         TableOfErrors: "pairs of place and error"}  # fmt: skip
 
 
 def value(entry: Key) -> str:
