@@ -11,14 +11,15 @@ import click
 
 from trochia import api
 from trochia.cli.progress import Progress
-from trochia.program import Message, UserCode
+from trochia.program import Log, Message, UserCode
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from trochia.analysis.check import Verdict
     from trochia.languages.gcode import Reading
     from trochia.machine.machine import Machine
+    from trochia.program import Action
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,24 +40,34 @@ def judge(
     *,
     reading: Reading,
     first_only: bool = True,
+    tell: bool = True,
 ) -> Job:
-    """Read the program (``-`` is standard input) and the machine, and judge the one on the other."""
+    """Read the program (``-`` is standard input) and the machine, and judge the one on the other.
+
+    ``tell``: print what the program says; who runs it does that as it says it.
+    """
     machine = api.load(machine_name)
     name = "<stdin>" if program == "-" else program
     with Progress() as progress:
         progress("reading", 0.0)
         text = sys.stdin.buffer.read() if program == "-" else Path(program).read_bytes()
         verdict = api.check(text, machine, at=place, name=name, profile=profile, first_only=first_only, reading=reading)
-    show_messages(verdict)
+    if tell and verdict.plan is not None:
+        show_messages(verdict.plan.program.actions)
     return Job(name=name, text=text, machine=machine, verdict=verdict)
 
 
-def show_messages(verdict: Verdict) -> None:
-    """Print what the program says to its operator and what it calls of the machine's own, on standard error."""
-    if verdict.plan is None:
-        return
-    for action in verdict.plan.program.actions:
+def show_messages(actions: Iterable[Action]) -> None:
+    """Print what a program says to its operator and what it calls of the machine's own, on standard error."""
+    for action in actions:
+        if isinstance(action, Log) and action.opens:
+            continue
         if isinstance(action, Message):
             click.echo(f"line {action.line}: {action.text}", err=True)
         elif isinstance(action, UserCode):
             click.echo(f"line {action.line}: calls {action}, a code of the machine's own", err=True)
+
+
+def place_of(program: str) -> Path:
+    """Return where a program of the command line lies; what comes from standard input lies in the present folder."""
+    return Path("stdin" if program == "-" else program)

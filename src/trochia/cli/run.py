@@ -14,6 +14,7 @@ from trochia.cli.record_options import recording_options, tell_recorded
 
 if TYPE_CHECKING:
     from trochia.cli.run_figures import Figures
+    from trochia.cli.run_words import Words
     from trochia.controller.recording import Take
     from trochia.controller.runtime import Runtime
     from trochia.languages.gcode import Reading
@@ -53,10 +54,10 @@ def command(
 
         run_board.run(program, machine_name, place, profile, reading=reading, port=port, baud=baud, yes=yes,
                       as_json=as_json)  # fmt: skip
-    from trochia.cli.job import judge  # noqa: PLC0415 - `trochia --help` must stay light
+    from trochia.cli.job import judge, place_of  # noqa: PLC0415 - `trochia --help` must stay light
     from trochia.cli.tables import show_verdict  # noqa: PLC0415
 
-    job = judge(program, machine_name, place, profile, reading=reading)
+    job = judge(program, machine_name, place, profile, reading=reading, tell=False)
     if job.verdict.plan is None or not job.verdict.ok:
         if as_json:
             options.print_json(job.verdict.figures())
@@ -66,9 +67,12 @@ def command(
     from trochia.backends.live_twin import DEEP, SHALLOW, LiveTwin  # noqa: PLC0415 - only what moves needs a backend
     from trochia.backends.switches import switches_of  # noqa: PLC0415
     from trochia.cli.run_figures import Figures  # noqa: PLC0415
+    from trochia.cli.run_words import Words  # noqa: PLC0415
     from trochia.cli.user_codes import attach, work_of  # noqa: PLC0415
     from trochia.controller.runtime import Runtime  # noqa: PLC0415
+    from trochia.program.logs import logs_of  # noqa: PLC0415
 
+    logs_of(job.verdict.plan.program.actions, place_of(program))  # told before anything moves, if it cannot be
     twin = LiveTwin(job.machine, switches=switches_of(job.machine), ahead=SHALLOW if virtual else DEEP)
     clock = 0.0 if virtual else time.monotonic()
     runtime = Runtime(twin, journal=journal, work=work_of(job.machine, machine_name).placed(**place), now=clock)
@@ -76,12 +80,15 @@ def command(
     if take is not None:
         runtime.recorder.start(take, program=job.name)
     figures = None if virtual else Figures(runtime)
-    session = _Session(runtime, virtual=virtual, now=clock, quiet=as_json, figures=figures)
+    words = Words(runtime)
+    session = _Session(runtime, words, virtual=virtual, now=clock, quiet=as_json, figures=figures)
     try:
         session.go(job.name, job.text.decode("latin-1"), yes=yes)
     finally:
         session.close()
         end_codes()
+        words.show()
+    logs = words.write_logs(place_of(program))
     if take is not None:
         tell_recorded(take, runtime.recorder.failed, quiet=as_json)
     status = session.status
@@ -89,9 +96,12 @@ def command(
         options.print_json({"ok": not status.alarms, "state": status.state, "time_s": session.took,
                             "alarms": [alarm.message for alarm in status.alarms],
                             "host": None if figures is None else figures.told(),
-                            "recording": None if take is None else str(take.path)})  # fmt: skip
-    elif figures is not None:
-        click.echo(figures.sentence())
+                            "recording": None if take is None else str(take.path),
+                            "logs": [str(path) for path in logs]})  # fmt: skip
+    else:
+        click.echo("".join(f"log      {path}\n" for path in logs), nl=False)
+        if figures is not None:
+            click.echo(figures.sentence())
     sys.exit(1 if status.alarms else 0)
 
 
@@ -99,8 +109,9 @@ class _Session:
     """A person at the machine: commands, questions, the line under way."""
 
     def __init__(
-        self, runtime: Runtime, *, virtual: bool, now: float, quiet: bool, figures: Figures | None = None
+        self, runtime: Runtime, words: Words, *, virtual: bool, now: float, quiet: bool, figures: Figures | None = None
     ) -> None:
+        self._words = words
         self._runtime, self._virtual, self._now, self._quiet = runtime, virtual, now, quiet
         self._figures = figures
         self.took = 0.0
@@ -171,6 +182,7 @@ class _Session:
         self._pass(LOOK)
         while self.status.state not in ENDS:
             try:
+                self._words.show()
                 self._show()
                 self._pass(LOOK)
                 if self.status.state == "held":
@@ -184,8 +196,9 @@ class _Session:
     def _ask(self, *, yes: bool) -> None:
         from trochia.messages import command as c  # noqa: PLC0415
 
-        request = self.status.request
-        if request is not None and request.kind == "hook":
+        status = self.status
+        request = status.request
+        if status.state != "held" or (request is not None and request.kind == "hook"):
             return  # it goes on by itself
         text = request.text if request is not None else "held; go on"
         if yes or click.confirm(f"\n{text}?", default=True, err=True):

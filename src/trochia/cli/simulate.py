@@ -10,7 +10,7 @@ import click
 
 from trochia import units
 from trochia.cli import options
-from trochia.cli.job import judge
+from trochia.cli.job import judge, place_of
 from trochia.cli.tables import show_plan, show_verdict
 from trochia.errors import UnitError
 
@@ -57,12 +57,13 @@ def command(
 ) -> None:  # fmt: skip
     """Run a program on the digital twin: recording and report.
 
-    Writes OUTPUT/report.html, OUTPUT/path.png and OUTPUT/recording.
+    Writes OUTPUT/report.html, OUTPUT/path.png and OUTPUT/recording; logs of the program (LOGOPEN) beside it.
 
     Example: trochia simulate programs/contour.ngc -m xy-table -o out
     """
     from trochia.analysis.prove import prove  # noqa: PLC0415 - plots and twin load only when asked for
     from trochia.cli.progress import Progress  # noqa: PLC0415
+    from trochia.program.logs import logs_of, write_logs  # noqa: PLC0415
 
     job = judge(program, machine_name, place, profile, reading=reading)
     if job.verdict.plan is None or not job.verdict.movable:
@@ -71,11 +72,14 @@ def command(
         else:
             show_verdict(job.verdict)
         sys.exit(1)
+    logs_of(job.verdict.plan.program.actions, place_of(program))  # told before the twin has run, if it cannot be
     with Progress() as progress:
         proof = prove(job.verdict, job.text, output, period=period, progress=progress)
+    logs = write_logs(proof.plan.program.actions, place_of(program))
     test = _circle(proof.recording, output) if circle else None
     if as_json:
-        options.print_json(proof.figures() | ({} if test is None else {"circle": test.figures()}))
+        figures = proof.figures() | ({} if test is None else {"circle": test.figures()})
+        options.print_json(figures | ({"logs": [str(path) for path in logs]} if logs else {}))
         sys.exit(0 if proof.verdict.ok else 1)
     show_plan(job.verdict.plan)
     contour = proof.contour_error
@@ -96,5 +100,7 @@ def command(
     every, servo = (1000 * seconds for seconds in (proof.recording.period, job.verdict.plan.machine.servo_period))
     if every > servo and period is None:
         click.echo(f'recorded every {every:g} ms, for it is long; --rate "{servo:g} ms" records every servo period')
+    for path in logs:
+        click.echo(f"log      {path}")
     click.echo(f"report   {proof.files['report']}")
     sys.exit(0 if proof.verdict.ok else 1)

@@ -249,6 +249,7 @@ class Controller:
     def end(self, *, whole: bool) -> None:
         """Be no longer busy; a program that has not come to its end can be gone on with."""
         made, job = self.running, self.activity
+        self._message()  # while the job is there to be asked
         if made is not None and isinstance(job, Job) and not self.lock.shut:
             point = job.point(self.report)
             self.note("end", name=made.name, whole=whole, line=self.report.line, **point)

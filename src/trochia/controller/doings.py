@@ -60,8 +60,8 @@ class Doings:
         Override of its speed, as a fraction.
     speed
         Signed spindle speed the program asked for last, before the override [rpm].
-    messages
-        What the program says to its operator, until taken.
+    told
+        What the program has said to its operator, and to its log, so far.
     dynamic
         Whether M4 was the last to turn spindle or beam on, at the program's end.
 
@@ -75,7 +75,8 @@ class Doings:
         self, program: Program, machine: Machine, *, dark: bool, spindle: float = 1.0, after: Doings | None = None
     ) -> None:
         self.spindle, self.speed = spindle, 0.0 if after is None else after.speed
-        self.messages: list[str] = []
+        self.told: list[Message] = [] if after is None else after.told
+        self._once: set[int] = {id(action) for action in self.told}
         self._machine, self._dark = machine, dark
         before = after is not None and after.dynamic
         self._dynamic = dynamic_moves(program, begin=before)
@@ -96,10 +97,16 @@ class Doings:
                 yield from (("spindle", 0.0), ("mist", 0.0), ("flood", 0.0))
             case Output() | SynchronisedOutput():
                 yield _output(self._machine, action), float(action.value)
-            case Message(text=text):
-                self.messages.append(text)
+            case Message() if id(action) not in self._once:  # after a hold what was sent is sent again
+                self._once.add(id(action))
+                self.told.append(action)
             case _:
                 pass
+
+    @property
+    def last_words(self) -> str:
+        """Return what the program has said last; nothing if it has not yet."""
+        return next((told.text.strip() for told in reversed(self.told) if told.text), "")
 
     def turning(self) -> Iterator[tuple[str, float]]:
         """Yield the spindle's output: nothing where S means the beam."""

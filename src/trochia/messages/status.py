@@ -98,6 +98,8 @@ class Status(msgspec.Struct, frozen=True, kw_only=True):
         Signed speed asked for [rpm].
     queued_s
         Motion the backend still holds [s].
+    message
+        What the program under way, or the last one, has said last.
     """
 
     sequence: int
@@ -123,4 +125,5 @@ class Status(msgspec.Struct, frozen=True, kw_only=True):
     io: dict[str, float] = {}
     queued_s: float = 0.0
     backend: str = ""
+    message: str = ""
     schema: int = SCHEMA_VERSION

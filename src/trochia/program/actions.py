@@ -145,6 +145,18 @@ class Message(Action):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Log(Message):
+    """A line for the program's log ``file``, told to the operator, too.
+
+    ``opens``: there is no line, the file begins here, or goes on where it ended (``append``).
+    """
+
+    file: str
+    opens: bool = False
+    append: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Pause(Action):
     """Program stop (M0), or optional stop (M1)."""
 

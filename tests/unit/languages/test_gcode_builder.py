@@ -211,7 +211,8 @@ def test_a_full_turn_in_inches_is_as_long_as_in_mm():
 
 def test_what_a_program_says_reaches_the_operator():
     program = build("#5 = 2\n(MSG, one)\n(DEBUG, #5)\n(PRINT, three)\n(LOGOPEN, log.txt)\n(LOG, %d#5)\n(LOGCLOSE)")
-    said = [(action.line, action.text.strip()) for action in program.actions if isinstance(action, Message)]
+    messages = [action for action in program.actions if isinstance(action, Message) and action.text]
+    said = [(action.line, action.text.strip()) for action in messages]
     assert said == [(2, "one"), (3, "2.000000"), (4, "three"), (6, "2")]
 
 

@@ -11,6 +11,7 @@ from trochia.program import (
     Coolant,
     Dwell,
     End,
+    Log,
     Message,
     Orient,
     Output,
@@ -42,6 +43,7 @@ class ToldActions:
     _surface: bool
     _mist: bool
     _flood: bool
+    _log: str | None = None  # the log that is open
 
     @property
     def _at(self) -> int:
@@ -167,14 +169,20 @@ class ToldActions:
         self.message(text)
 
     def open_log(self, name: str, *, append: bool) -> None:
-        """Nothing: a program that is only read writes no file."""
+        """Begin a log; who runs the program writes it."""
+        self._log = name.strip()
+        self._actions.append(Log(at=self._at, line=self.line, text="", file=self._log, opens=True, append=append))
 
     def log(self, text: str) -> None:
-        """Tell the operator."""
-        self.message(text)
+        """Tell the operator, and the log that is open."""
+        if self._log is None:
+            self.message(text)
+        else:
+            self._actions.append(Log(at=self._at, line=self.line, text=text, file=self._log))
 
     def close_log(self) -> None:
-        """Nothing: no log is open."""
+        """Close the log."""
+        self._log = None
 
     def program_stop(self, *, optional: bool) -> None:
         """Wait for the operator."""
