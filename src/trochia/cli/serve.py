@@ -48,8 +48,8 @@ def users_option(command: Callable[..., None]) -> Callable[..., None]:
 @click.option("--key", type=file, metavar="PEM", help="The certificate's private key.")
 @users_option
 @click.option("--journal", type=click.Path(file_okay=False, path_type=Path), metavar="DIR",
-              help="Folder of the machine's journal, and in it of the log of who asked for what; "
-                   "without it nothing is kept.")  # fmt: skip
+              help="Folder of the machine's journal, in it the log of who asked for what, and offsets and variables "
+                   "over a restart; without it nothing is kept.")  # fmt: skip
 @click.option("--recordings", type=click.Path(file_okay=False, path_type=Path), metavar="DIR",
               help="Folder of the recordings that clients start; without it they cannot.")  # fmt: skip
 def command(
@@ -94,10 +94,12 @@ def _runtime(machine: Machine, name: str, journal: Path | None, recordings: Path
     from trochia.backends.live_twin import DEEP, LiveTwin  # noqa: PLC0415 - only what moves needs a backend
     from trochia.backends.switches import switches_of  # noqa: PLC0415
     from trochia.cli.user_codes import attach, work_of  # noqa: PLC0415
+    from trochia.controller.offsets import NAME  # noqa: PLC0415
     from trochia.controller.runtime import Runtime  # noqa: PLC0415
 
     twin = LiveTwin(machine, switches=switches_of(machine), ahead=DEEP)
-    runtime = Runtime(twin, journal=journal, recordings=recordings, work=work_of(machine, name), now=time.monotonic())
+    runtime = Runtime(twin, journal=journal, recordings=recordings, work=work_of(machine, name),
+                      keep=None if journal is None else journal / NAME, now=time.monotonic())  # fmt: skip
     attach(runtime, machine, name)
     return runtime
 

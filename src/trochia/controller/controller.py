@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from trochia.backends.live import Report
     from trochia.controller.activity import Activity
     from trochia.controller.readying import Ready
+    from trochia.languages.gcode import Reading
     from trochia.machine.machine import Machine
     from trochia.messages import AnyCommand
 
@@ -47,6 +48,8 @@ class Controller:
         The backend's first.
     latency, ahead
         Of the backend [s].
+    reading
+        How programs are read.
 
     Attributes
     ----------
@@ -59,8 +62,9 @@ class Controller:
     """
 
     def __init__(
-        self, machine: Machine, report: Report, *, latency: float, ahead: float, work: WorkState | None = None
-    ) -> None:
+        self, machine: Machine, report: Report, *, latency: float, ahead: float, work: WorkState | None = None,
+        reading: Reading | None = None,
+    ) -> None:  # fmt: skip
         self.machine, self.report = machine, report
         self.latency, self.ahead = latency, ahead
         self.state = State.OFF
@@ -68,7 +72,7 @@ class Controller:
         self.switches, self.overrides = SwitchStatus(), OverrideStatus()
         self.alarms = Alarms()
         self._guards = Guards(machine)
-        self.readier = Readier(machine)
+        self.readier = Readier(machine, reading)
         self.loaded: tuple[str, str] | None = None  # name and text of the program
         self.preview: Ready | None = None  # the program as it was planned when it was loaded
         self.running: Ready | None = None

@@ -309,7 +309,7 @@ def _jog(
         raise LimitError(f"a jog's speed must be above zero, not {feed!r}")
     words = " ".join(f"{name}{value:.9f}" for name, value in target.items())
     made = it.readier.ready(f"G21 G90 G94 G53 G1 {words} F{60.0 * feed:.9f}\nM2\n", "<jog>", work=it.work.__class__(),
-                            at=it.position(), bounded=False)  # fmt: skip
+                            at=it.position(), bounded=False, ours=True)  # fmt: skip
     it.pending.append(Orders(lit=False, watch=()))
     it.begin(Jog(made.plan, it.machine, origin=it.report.executed, ahead=it.ahead, now=now, lease=lease))
 

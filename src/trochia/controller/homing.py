@@ -129,7 +129,8 @@ class Home:
             return
         it = self._it
         feed = f"G21 G90 G94 G53 G1 {move.axis.name}{move.to:.9f} F{60.0 * move.speed:.9f}\nM2\n"
-        made = it.readier.ready(feed, "<home>", work=it.work.__class__(), at=it.position(), bounded=False)
+        made = it.readier.ready(feed, "<home>", work=it.work.__class__(), at=it.position(), bounded=False,
+                                ours=True)  # fmt: skip
         self._feeder = Feeder(LivePlan.of(made.plan.trajectory, it.machine), it.machine,
                               origin=it.report.executed, ahead=it.ahead)  # fmt: skip
         self._move, self._base = move, it.report.commanded.copy()

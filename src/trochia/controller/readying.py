@@ -63,15 +63,23 @@ class Ready:
 
 
 class Readier:
-    """Readies programs for one machine."""
+    """Readies programs for one machine.
 
-    def __init__(self, machine: Machine) -> None:
+    Parameters
+    ----------
+    reading
+        How programs are read; in the machine's dialect where nothing else is said.
+    """
+
+    def __init__(self, machine: Machine, reading: gcode.Reading | None = None) -> None:
+        reading = reading or gcode.Reading()
         self._machine = machine
+        self._reading = replace(reading, dialect=reading.dialect or gcode.DIALECTS[machine.dialect])
         self._last: Ready | None = None
 
     def ready(
         self, text: str, name: str, *, work: WorkState, at: dict[str, float], block_delete: bool = False,
-        exact: bool = False, bounded: bool = True, answers: tuple[Answer, ...] | None = None,
+        exact: bool = False, bounded: bool = True, ours: bool = False, answers: tuple[Answer, ...] | None = None,
     ) -> Ready:  # fmt: skip
         """Return the plan of a text that begins at machine positions ``at`` [mm, degree].
 
@@ -81,6 +89,8 @@ class Readier:
             Whether motion rests at the end of every move, as it does block by block.
         bounded
             Whether the travel binds: it does not where nobody knows the position, nor where the machine is to answer.
+        ours
+            Whether the text is the controller's own, in LinuxCNC's language.
         answers
             Of the machine, to the first questions; the text is read to the next.  None: as if nobody answered.
 
@@ -93,7 +103,8 @@ class Readier:
         key = (text, name, id(work), tuple(round(value, 6) for value in start), block_delete, exact, answers)
         if self._last is not None and self._last.key == key:
             return self._last
-        program, left, asks = self._read(text, name, work, start, block_delete=block_delete, answers=answers)
+        program, left, asks = self._read(text, name, work, start, block_delete=block_delete, answers=answers,
+                                         ours=ours)  # fmt: skip
         plan = make(_stopping(program) if exact else program, self._machine)
         made = Ready(plan=plan, text=text, name=name, key=key, work=left, found=work, start=start, answers=answers,
                      block_delete=block_delete, asks=asks, moves=len(program.moves),
@@ -125,13 +136,14 @@ class Readier:
 
     def _read(
         self, text: str, name: str, work: WorkState, start: tuple[float, ...], *, block_delete: bool,
-        answers: tuple[Answer, ...] | None,
+        answers: tuple[Answer, ...] | None, ours: bool = False,
     ) -> tuple[Program, WorkState, Action | None]:  # fmt: skip
         """Return a text as a program, what it leaves set up, and the question it was read to."""
         given = None if answers is None else Answers(answers)
         found = replace(work, variables={**dict.fromkeys(KEPT, 0.0), **work.variables}) if answers else work
         left: list[WorkState] = []
-        reading = gcode.Reading(work=found, on_end=left.append, answers=given)
+        base = gcode.Reading() if ours else self._reading
+        reading = replace(base, work=found, on_end=left.append, answers=given)
         program = gcode.read(text, name=name, work=found, start=start, block_delete=block_delete, reading=reading)
         asks = program.actions[-1] if given is not None and given.wanting else None
         return program, left[-1] if left else work, asks

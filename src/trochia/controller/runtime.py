@@ -23,6 +23,7 @@ from trochia.backends.live import Orders, Trouble
 from trochia.controller.controller import Controller
 from trochia.controller.interrupted import interrupted, keep
 from trochia.controller.journal import Journal
+from trochia.controller.offsets import Keeper, kept_work
 from trochia.controller.recording import Recorder
 from trochia.controller.recording_commands import taken_by
 from trochia.errors import LinkError
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from trochia.backends.live import Report, SegmentBackend
+    from trochia.languages.gcode import Reading
     from trochia.messages import Ack, AnyCommand, Status
     from trochia.program import WorkState
 
@@ -63,6 +65,10 @@ class Runtime:
         Folder of the journal; None: nothing is kept.
     recordings
         Folder of the recordings that commands ask for; None: they are refused.
+    keep
+        File in which offsets and variables outlast the controller; None: they do not.
+    reading
+        How programs are read; None: in the machine's dialect, without folders of subroutines.
     now
         When it begins, of the clock that is used [s].
 
@@ -76,11 +82,13 @@ class Runtime:
 
     def __init__(
         self, backend: SegmentBackend, *, journal: Path | None = None, recordings: Path | None = None,
-        work: WorkState | None = None, now: float = 0.0,
+        work: WorkState | None = None, keep: Path | None = None, reading: Reading | None = None, now: float = 0.0,
     ) -> None:  # fmt: skip
         self.backend = backend = compensated(backend)
         self.controller = Controller(backend.machine, backend.open(now), latency=backend.latency,
-                                     ahead=backend.ahead, work=work)  # fmt: skip
+                                     ahead=backend.ahead, work=kept_work(keep, work) if keep else work,
+                                     reading=reading)  # fmt: skip
+        self._keeper = Keeper(keep, self.controller.work) if keep else None
         self.load = Load()
         self.recorder = Recorder(backend, turn=PERIOD)
         self._recordings = recordings
@@ -124,6 +132,9 @@ class Runtime:
         self._order(orders, now)
         if answers or controller.state is not state or now - self._status.time >= STATUS - PERIOD / 2:
             self._status = controller.status(now)
+        trouble = self._keeper.look(controller.work) if self._keeper is not None else ""
+        if trouble:
+            controller.note("failure", text=f"offsets are not kept: {trouble}")
         entries, controller.journal = controller.journal, []
         for kind, data in entries:
             self._write(now, kind, data)
