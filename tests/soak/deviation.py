@@ -45,7 +45,7 @@ def used(program: Program, machine: Machine, commanded: Toolpath, programmed: To
             rows, s = _samples(one, _EACH)
             permitted = allowed[np.searchsorted(order, one.segments["move"][rows]).clip(0, len(order) - 1)]
             distance = np.maximum(
-                _distance(one.points(rows, s), one.segments["move"][rows], other, group, order) - _ROUNDING, 0.0
+                _distance(one.points(rows, s), one.segments["move"][rows], other, group) - _ROUNDING, 0.0
             )
             off = distance > 0.0
             with np.errstate(divide="ignore"):
@@ -59,7 +59,7 @@ def _samples(path: Toolpath, each: int) -> tuple[NDArray[np.intp], NDArray[np.fl
 
 
 def _distance(
-    points: NDArray[np.float64], moves: NDArray[np.uint32], path: Toolpath, group: slice, order: NDArray[np.uint32]
+    points: NDArray[np.float64], moves: NDArray[np.uint32], path: Toolpath, group: slice
 ) -> NDArray[np.float64]:
     """Return the distance of points (k, n) of some moves (k,) to a path, in the columns of a group (k,)."""
     cells = np.repeat(np.arange(len(path)), 2)  # halves of segments, as a circle's end is its start
@@ -69,7 +69,9 @@ def _distance(
     points = points[:, group]
     apart = cdist(points, samples).reshape(len(points), len(cells), _FINE + 1)
     least, few, many = apart.min(axis=2), min(_NEAR, len(cells)), min(_OWN, len(cells))
-    own = np.abs(np.searchsorted(order, path.segments["move"])[cells] - np.searchsorted(order, moves)[:, None]) <= 1
+    order = np.unique(path.segments["move"])  # one of them stands for those behind it that it was merged with
+    number = np.searchsorted(order, moves, side="right") - 1
+    own = np.abs(np.searchsorted(order, path.segments["move"])[cells] - number[:, None]) <= 1
     cell = np.concatenate([np.argpartition(off, count - 1, axis=1)[:, :count]
                            for off, count in ((least, few), (np.where(own, least, np.inf), many))], axis=1)  # fmt: skip
     at = inside[cell, np.take_along_axis(apart.argmin(axis=2), cell, axis=1)].ravel()
