@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from trochia.languages.gcode.state import State
 
 _NURBS = 52  # G5.2 in tenths
-_ORDER = 3  # of a curve without L
+_ORDER = 3  # of a curve without L, and the least
 _IN_PLANE = (0, 1)
 
 
@@ -73,7 +73,7 @@ def add_point(block: Block, state: State, sink: Sink) -> None:
                               hint="Write P1 for a plain one.")  # fmt: skip
     else:
         weight = weight if weight > 0.0 else 1.0
-        state.spline_order = round(block.values.get("l", _ORDER))
+        state.spline_order = max(round(block.values.get("l", _ORDER)), _ORDER)
         state.spline_points = [(state.position[0], state.position[1], weight)]
     if block.axes:
         if not all(column in block.axes for column in _IN_PLANE):
@@ -98,7 +98,7 @@ def end_curve(block: Block, state: State, sink: Sink) -> None:
                           hint="Add points, or write a smaller L.")  # fmt: skip
     end = state.position.copy()
     end[0], end[1] = points[-1][0], points[-1][1]
-    sink.nurbs_feed(points, max(order, 2), end)
+    sink.nurbs_feed(points, order, end)
     state.position = end
     state.motion = NO_MOTION
 
