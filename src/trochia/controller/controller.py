@@ -20,6 +20,7 @@ from trochia.controller.interrupted import Interrupted, work_entry
 from trochia.controller.job import BLOCK_END, Job
 from trochia.controller.jog import Jog
 from trochia.controller.lock import Lock
+from trochia.controller.outputs import Outputs
 from trochia.controller.panel import Watch
 from trochia.controller.readying import MDI, Readier
 from trochia.controller.states import MOVING, TABLE, Event, State, legal
@@ -83,6 +84,7 @@ class Controller:
         self.hook = self._said = ""  # the one whose program runs; what the program has said last
         self.panel = Watch(machine.panel)
         self.lock = Lock(machine.servo_period)
+        self._outputs = Outputs(machine)
         self.asked = 0.0  # when a command came last [s]
         self.resume_at: float | None = None  # when a job is resumed whose spindle has to get to its speed first [s]
         self._spindle_stopped = False
@@ -123,6 +125,9 @@ class Controller:
         for trouble in self._guards.troubles(report, homing=self.state is State.HOMING):
             self.fault(trouble)
         self.panel.look(self, now)
+        due = self._outputs.due(report)
+        if due:
+            self.pending.append(Orders(outputs=due))
         self._look_at_power()
         if isinstance(self.activity, Jog) and self.activity.expired(now):
             self.activity.hold(report, self.latency)

@@ -172,7 +172,11 @@ def _check_panel(machine: Machine) -> None:
     for key, name in named.items():
         if name not in inputs:
             raise ConfigError(f"there is no input {name!r} under [io]", key=key, hint=did_you_mean(name, inputs))
-    if machine.beam is None and "panel.arm" in named:
+    named = {f"io.{c.name}.follows": c.follows for c in machine.io if c.follows is not None}
+    for key, name in named.items():
+        if name not in inputs:
+            raise ConfigError(f"there is no input {name!r} under [io]", key=key, hint=did_you_mean(name, inputs))
+    if machine.beam is None and machine.panel is not None and machine.panel.arm is not None:
         raise ConfigError("only a machine with a beam has one", key="panel.arm", hint="Add [beam], or leave it out.")
 
 

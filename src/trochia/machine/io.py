@@ -89,6 +89,8 @@ class Channel:
         Of a timed output [s], of a pulse train [1/s].
     delay
         From the signal to its effect, as of a valve [s].
+    follows
+        The input whose level an output has under the live controller.
     """
 
     name: str
@@ -111,6 +113,7 @@ class Channel:
     delay: float = field(
         default=0.0, metadata=key(Quantity("time"), "from the signal to its effect", Bound.NOT_NEGATIVE)
     )
+    follows: str | None = field(default=None, metadata=key(Text(), "input whose level the output has"))
 
     def __post_init__(self) -> None:
         path = f"io.{self.name}"
@@ -119,6 +122,8 @@ class Channel:
             if (getattr(self, name) is not None) != (self.kind == owner):
                 what = f"missing: a {owner} output needs it" if self.kind == owner else f"only a {owner} output has one"
                 raise ConfigError(what, key=f"{path}.{name}")
+        if self.follows is not None and self.kind != "latched":
+            raise ConfigError("only a latched output follows an input", key=f"{path}.follows")
         self._check_current(path)
 
     @property
