@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from trochia.cli import axis_options, options
-from trochia.errors import RecordingError
+from trochia.cli import axis_options, identify_data, options
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -16,23 +15,28 @@ if TYPE_CHECKING:
     from trochia.analysis.identification import Estimate
     from trochia.experiments import Identified
 
-_MODELS = ("first-order", "fopdt", "second-order", "inverse-dynamics")
-
 
 @click.command()
-@click.argument("data", required=False, type=click.Path(exists=True, dir_okay=False), metavar="[DATA.csv|DATA.hex]")
+@click.argument("data", required=False, type=click.Path(exists=True, dir_okay=False),
+                metavar="[DATA.csv|DATA.hex|MOTOR.toml]")  # fmt: skip
 @axis_options.machine
 @axis_options.joint
-@click.option("--model", type=click.Choice(_MODELS), default="first-order", show_default=True,
-              help="Of a CSV: a step response (time, value), or motion (time, position, force).")  # fmt: skip
+@click.option("--model", type=click.Choice(identify_data.MODELS), default="first-order", show_default=True,
+              help="Of a CSV: a step response (time, value); motion (time, position, force); frequency response or two "
+                   "masses (time, input, output, and where a loop is closed what was injected).")  # fmt: skip
 @click.option("--step", default=1.0, show_default=True, help="Size of the step that the CSV answers to.")
+@click.option(
+    "--viscous", default=0.0, show_default=True, help="Friction that --model two-mass takes as known [N·m·s/rad]."
+)
 @axis_options.plots
-def command(*, data: str | None, machine_name: str | None, joint: str | None, model: str, step: float,
+def command(*, data: str | None, machine_name: str | None, joint: str | None, model: str, step: float, viscous: float,
             plot: str | None, as_json: bool) -> None:  # fmt: skip
-    """Find a model: of a step response, a motion, the leadscrew's log, or a servo joint by experiment on its twin.
+    """Find a model: of data, of a motor's row in a catalogue, or of a servo joint by experiment on its twin.
 
     The experiment pushes, runs at steady speeds, measures a frequency response and crosses the gap; it is refused
     where it would leave travel, speed or command, and leaves the motor off whatever happens.
+
+    Data are a step response, a motion, a chirp or multisine (CSV), or the electronic leadscrew's log (Intel HEX).
 
     Example: trochia identify -m xy-table --joint X -o response.png
     """
@@ -41,16 +45,55 @@ def command(*, data: str | None, machine_name: str | None, joint: str | None, mo
     if machine_name is not None:
         _experiment(machine_name, joint, plot, as_json=as_json)
         return
-    if plot is not None:
-        raise click.BadParameter("pictures are of experiments: give a machine with -m", param_hint="--plot")
     assert data is not None, "one of both is given"
-    found = _hex(Path(data)) if Path(data).suffix.lower() == ".hex" else _csv(Path(data), model, step)
+    found = identify_data.from_data(Path(data), model, step, viscous)
+    if plot is not None and found.response is None:
+        raise click.BadParameter("pictures are of experiments and of frequency responses", param_hint="--plot")
+    _tell(data, found, plot, as_json=as_json)
+
+
+def _tell(data: str, found: identify_data.FromData, plot: str | None, *, as_json: bool) -> None:
+    """Tell what data say."""
+    estimate, files = found.estimate, []
+    if plot is not None and found.response is not None:
+        rows = [] if estimate is None else [(name, str(number)) for name, number in estimate.numbers.items()]
+        axis_options.write_plot(plot, data, lambda form: _response_of(found, data, form), rows)
+        files = [plot]
     if as_json:
-        options.print_json(found[0].figures() | {"metrics": {"rms": found[0].rms, "fit": found[0].fit}} | found[1])
-    else:
-        show(found[0])
-        for name, value in found[1].items():
+        figures = {"model": "frequency-response", "parameters": {}, "uncertainty": {}} if estimate is None else (
+            estimate.figures() | {"metrics": {"rms": estimate.rms, "fit": estimate.fit}})  # fmt: skip
+        options.print_json(figures | found.figures | {"files": files})
+        return
+    if estimate is not None:
+        show(estimate)
+    for name, value in found.figures.items():
+        if name == "response":
+            click.echo(
+                f"  {len(value)} lines from {value[0]['frequency_Hz']:.4g} to {value[-1]['frequency_Hz']:.4g} Hz"
+            )
+        elif name == "deviations":
+            for what, off in value.items():
+                click.echo(
+                    f"  {what.replace('_', ' ')} of the row: " + ("not given" if off is None else f"{off:+.2%} off")
+                )
+        else:
             click.echo(f"  {name.replace('_', ' ')}: {value}")
+    for file in files:
+        click.echo(f"wrote {file}")
+
+
+def _response_of(found: identify_data.FromData, title: str, form: str) -> bytes:
+    from trochia.analysis.identification.two_mass import plant_of  # noqa: PLC0415 - light --help
+    from trochia.analysis.tuning.picture import response_picture  # noqa: PLC0415 - it loads matplotlib
+    from trochia.servo.sampled import plant_response  # noqa: PLC0415
+
+    assert found.response is not None, "asked for with one"
+    model = None
+    if found.estimate is not None:
+        names = ("motor_inertia", "load_inertia", "stiffness", "damping", "load_share")
+        plant = plant_of([found.estimate[name] for name in names], found.estimate["viscous"], found.estimate["lag"])
+        model = plant_response(plant, found.response.frequency, found.response.period)
+    return response_picture(found.response, title, model, form=form)
 
 
 def show(found: Estimate) -> None:
@@ -58,42 +101,6 @@ def show(found: Estimate) -> None:
     click.secho(f"{found.model}: fit {found.fit:.5f} over {found.samples} samples", bold=True)
     for name, number in found.numbers.items():
         click.echo(f"  {name.replace('_', ' '):<16} {number}")
-
-
-def _hex(path: Path) -> tuple[Estimate, dict[str, Any]]:
-    """Return the fit of the leadscrew's log, and what is wrong with its rows."""
-    from trochia.analysis.identification import read_hex  # noqa: PLC0415 - `trochia --help` must stay light
-    from trochia.analysis.identification.step_log import step_log  # noqa: PLC0415
-
-    dump = read_hex(path.read_text(encoding="utf-8", errors="replace"))
-    log = step_log(dump)
-    problems = [f"{path.name}:{line}: row {problem}" for line, problem in dump.problems]
-    return log.pole(), {"steady_rad_s": log.steady, "repaired": len(log.repaired), "problems": problems}
-
-
-def _csv(path: Path, model: str, step: float) -> tuple[Estimate, dict[str, Any]]:
-    from trochia.analysis.identification import fit_step, inverse_dynamics  # noqa: PLC0415 - as above
-    from trochia.analysis.identification.columns import read_columns  # noqa: PLC0415
-
-    if model == "inverse-dynamics":
-        t, position, force = read_columns(path, 3)
-        return inverse_dynamics(position, force, _period(path, t)), {}
-    t, y = read_columns(path, 2)
-    return fit_step(t, y, step=step, model=model), {}
-
-
-def _period(path: Path, t: Any) -> float:  # noqa: ANN401 - an array; numpy is imported late
-    """Return the even period of times."""
-    import numpy as np  # noqa: PLC0415 - as above
-
-    steps = np.diff(t)
-    period = float(np.median(steps))
-    odd = np.nonzero(np.abs(steps - period) > 0.05 * period)[0]
-    if len(odd):
-        raise RecordingError(f"{path.name} has a gap behind row {int(odd[0]) + 1}: {steps[odd[0]]:.4g} s, "
-                             f"where samples are {period:.4g} s apart",
-                             hint="Record at an even rate, or cut the recording there.")  # fmt: skip
-    return period
 
 
 def _experiment(machine_name: str, joint: str | None, plot: str | None, *, as_json: bool) -> None:

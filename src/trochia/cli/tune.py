@@ -13,7 +13,8 @@ if TYPE_CHECKING:
     from trochia.analysis.tuning import Margins
 
 _AXIS_RULES = ("shaping", "optimise", "relay")  # the first two are those of `analysis.tuning.AXIS_RULES`
-_MODEL_RULES = ("simc", "ziegler-nichols", "ziegler-nichols-closed", "bandwidth")
+_ULTIMATE_RULES = ("ziegler-nichols-closed", "ziegler-nichols-pi", "tyreus-luyben")  # `tuning.rules.ULTIMATE_RULES`
+_MODEL_RULES = ("simc", "ziegler-nichols", *_ULTIMATE_RULES, "bandwidth")
 
 
 @click.command()
@@ -30,7 +31,7 @@ _MODEL_RULES = ("simc", "ziegler-nichols", "ziegler-nichols-closed", "bandwidth"
 @click.option("--gain", type=float, help="Of the model gain exp(-dead s) / (lag s + 1).")
 @click.option("--lag", type=float, help="Of the model [s]; without it the model integrates.")
 @click.option("--dead", type=float, help="Of the model [s].")
-@click.option("--ku", type=float, help="Ultimate gain, for ziegler-nichols-closed.")
+@click.option("--ku", type=float, help="Ultimate gain, for rules that start from it.")
 @click.option("--tu", type=float, help="Ultimate period [s].")
 @click.option("--bandwidth", type=float, help="Of position control of gain / (s (lag s + 1)) [Hz].")
 @click.option("--damping", type=float, default=0.7, show_default=True, help="With --bandwidth.")
@@ -94,7 +95,7 @@ def _model(rule: str, model: dict[str, Any], *, as_json: bool) -> None:
 
     found: dict[str, Any] = {"model": None, "uncertainty": None, "margins": None, "metrics": None}
     margins: Margins | None = None
-    if rule == "ziegler-nichols-closed":
+    if rule in _ULTIMATE_RULES:
         gain, time = _needed(model, "ku", "tu")
         gains = ULTIMATE_RULES[rule](Ultimate(gain=gain, time=time))
         found["model"] = {"ku": gain, "tu_s": time}

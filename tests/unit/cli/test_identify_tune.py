@@ -12,10 +12,14 @@ import pytest
 from click.testing import CliRunner
 
 from trochia import api
+from trochia.analysis.identification.two_mass import plant_of
 from trochia.cli import identify, tune
-from trochia.errors import ConfigError, LimitError, RecordingError
+from trochia.errors import ConfigError, LimitError, MachineError, RecordingError
 from trochia.experiments import TwinAxis
+from trochia.experiments.signals import chirp
+from trochia.kernels.servo import ServoKernel
 from trochia.machine.servos import CascadeLoop
+from trochia.servo.axis import plant_members
 
 if TYPE_CHECKING:
     from trochia.kernels.servo import ServoSamples
@@ -90,6 +94,11 @@ def test_simc_on_the_command_line() -> None:
     assert found["gains"]["kp"] == pytest.approx(0.75)
 
 
+@pytest.mark.parametrize(("rule", "kp"), [("ziegler-nichols-closed", 6.0), ("tyreus-luyben", 3.125)])
+def test_rules_from_an_ultimate_gain_on_the_command_line(rule: str, kp: float) -> None:
+    assert json.loads(run(tune.command, "--rule", rule, "--ku", "10", "--tu", "0.2", "--json"))["gains"]["kp"] == kp
+
+
 def test_bandwidth_and_damping_on_the_command_line() -> None:
     words = ("--gain", "2.0866", "--lag", "0.01346", "--bandwidth", "20", "--json")
     assert json.loads(run(tune.command, *words))["margins"]["pm_deg"] > 45.0
@@ -122,6 +131,80 @@ def test_options_that_do_not_go_together_are_named(words: tuple[str, ...], what:
     result = CliRunner().invoke(tune.command, words)
     assert result.exit_code == 2
     assert what in result.output
+
+
+def shaken(path: Path) -> None:
+    """Write the motion of two masses under a chirp: time, torque, position."""
+    plant = plant_of([1e-4, 2e-4, 12.0, 2e-3, 0.5], 1e-3, 3e-4)
+    torque = np.tile(chirp(4096, 1e-3, (2.0, 200.0)), 8)
+    rows = ServoKernel(plant_members(plant, 1e-5)).drive(torque, steps=100).measured
+    rows = rows + np.random.default_rng(1).normal(0.0, 2e-5, len(rows))
+    np.savetxt(path, np.stack([1e-3 * np.arange(len(torque)), torque, rows], axis=1), delimiter=",",
+               header="time,torque,position", comments="")  # fmt: skip
+
+
+def test_a_chirp_in_a_csv_gives_response_coherence_and_two_masses(tmp_path: Path) -> None:
+    path, page = tmp_path / "chirp.csv", tmp_path / "response.html"
+    shaken(path)
+    seen = json.loads(run(identify.command, str(path), "--model", "frequency-response", "--json"))
+    assert seen["coherence_median"] > 0.99
+    assert set(seen["response"][0]) == {"frequency_Hz", "magnitude", "phase_deg", "coherence"}
+    words = (str(path), "--model", "two-mass", "--viscous", "1e-3", "-o", str(page))
+    found = json.loads(run(identify.command, *words, "--json"))
+    expected = {"motor_inertia": 1e-4, "load_inertia": 2e-4, "stiffness": 12.0, "lag": 3e-4}
+    assert {name: found["parameters"][name] for name in expected} == pytest.approx(expected, rel=0.01)
+    assert found["parameters"]["damping"] == pytest.approx(2e-3, rel=0.05)
+    assert found["uncertainty"]["viscous"] is None  # taken as known
+    assert found["files"] == [str(page)]
+    assert "<svg" in page.read_text()
+    assert "wrote" in run(identify.command, *words)
+
+
+ROW = """voltage = "48 V"
+resistance = "2.45 ohm"
+inductance = "0.513 mH"
+torque_constant = "53.8 mN·m/A"
+inertia = "34.7 g·cm²"
+no_load_current = "78.6 mA"
+no_load_speed = "8490 rpm"
+stall_torque = "1050 mN·m"
+time_constant = "2.94 ms"
+source = "maxon's sheet of its 30 mm motor of 48 V"
+"""
+
+
+def test_a_catalogue_s_row_gives_constants_and_is_held_to_itself(tmp_path: Path) -> None:
+    path = tmp_path / "motor.toml"
+    path.write_text(ROW)
+    found = json.loads(run(identify.command, str(path), "--json"))
+    assert all(abs(off) < 0.01 for off in found["deviations"].values())
+    assert found["parameters"]["no_load_speed"] == pytest.approx(8490, rel=0.01)
+    for name, value in (("no_load_speed", 8490), ("stall_torque", 1.05), ("mechanical_time", 2.94e-3)):
+        assert abs(found["parameters"][name] - value) < 3.0 * found["uncertainty"][name]
+    assert "stall torque of the row: +0.38% off" in run(identify.command, str(path))
+    path.write_text(ROW.replace('"78.6 mA"', '"25 A"'))
+    with pytest.raises(ConfigError, match="take more than the 48 V"):
+        run(identify.command, str(path))
+    amperes = ROW.replace("48 V", "48 A")
+    for text, what in ((amperes, "expected a voltage"), (ROW + "kt = 1\n", "kt"), ("= 3", "not TOML"), ("", "voltage")):
+        path.write_text(text)
+        with pytest.raises(MachineError, match=what):
+            run(identify.command, str(path))
+
+
+@pytest.mark.parametrize(
+    ("rows", "what"),
+    [
+        ("0,0,0\n" * 200, "times do not rise"),
+        ("".join(f"{i * 1e-3},0,{i}\n" for i in range(20)), "too few for windows"),
+        ("".join(f"{i * 1e-3 + (i > 500)},1,{i}\n" for i in range(1000)), "has a gap behind row 501"),
+    ],
+)
+def test_data_that_give_no_response_are_named(tmp_path: Path, rows: str, what: str) -> None:
+    path = tmp_path / "bad.csv"
+    path.write_text(rows)
+    with pytest.raises(RecordingError, match=what):
+        run(identify.command, str(path), "--model", "frequency-response")
 
 
 @pytest.fixture

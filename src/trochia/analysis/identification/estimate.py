@@ -22,6 +22,8 @@ class Number(NamedTuple):
     unit: str = ""
 
     def __str__(self) -> str:
+        if math.isnan(self.sigma):  # taken as known
+            return f"{self.value:.6g} {self.unit}".rstrip()
         digits = 3 if not self.sigma or not math.isfinite(self.sigma) else max(
             1, min(9, 2 + math.floor(math.log10(max(abs(self.value), 1e-300) / self.sigma)))
         )  # fmt: skip
@@ -61,7 +63,8 @@ class Estimate:
         return {
             "model": self.model,
             "parameters": {name: number.value for name, number in self.numbers.items()},
-            "uncertainty": {name: number.sigma for name, number in self.numbers.items()},
+            "uncertainty": {name: None if math.isnan(number.sigma) else number.sigma
+                            for name, number in self.numbers.items()},
             "units": {name: number.unit for name, number in self.numbers.items()},
             "rms": self.rms, "fit": self.fit, "samples": self.samples,
         }  # fmt: skip
