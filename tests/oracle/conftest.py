@@ -25,12 +25,13 @@ PRECISION = 1e-12  # of numbers beyond any machine, which powers and logarithms 
 _COLUMNS = re.compile(r"^ *\d+ (?:N\.{5}|N\d+|N {5}) *(?=[A-Z])")  # counter and line number
 _ASIDE = ("executing", "num_spindles")  # what it says beside the error
 _ASKED = Counter[str]()  # programs compared, by where they come from
+_MADE_UP = re.compile(r"O-?[0-9.]+ CALL\Z")  # the call that a lathe cycle makes, which is no line of the text
 _NUMBER = re.compile(r"-?\d+\.\d+")
 
 
 @dataclass(frozen=True)
 class Run:
-    """Canonical lines, and the text of the line that was rejected (None: accepted)."""
+    """Canonical lines, and the text of the line that was rejected (None: accepted; empty: it does not say which)."""
 
     lines: list[str]
     rejected: str | None
@@ -65,7 +66,10 @@ def reference(text: bytes, variables: str | None = None, tools: str | None = Non
             if done.returncode == 0 or len(said) > 1:
                 break
     lines = [_COLUMNS.sub("", line, count=1) for line in done.stdout.decode("latin-1").split("\n")[:-1]]
-    return Run(lines, said[1] if done.returncode else None, said[0])
+    rejected = said[1] if done.returncode else None
+    if rejected is not None and _MADE_UP.match(rejected) and rejected.encode() not in text:
+        rejected = ""
+    return Run(lines, rejected, said[0])
 
 
 def ours(text: bytes, *, fast: bool, work: WorkState) -> Run:

@@ -30,7 +30,6 @@ SAMPLES = sorted((HERE.parents[1] / "programs").glob("*.ngc"))
 DIFFERENCES = {
     "error-log-elsewhere": "the reference opens a log anywhere",
     "error-turning-narrow": "the reference dies of a D that a groove has no room for",
-    "error-turning-not-whole": "the reference names a line that does not exist: O1.500000 CALL",
     "error-turning-too-many-passes": "the reference has no bound",
     "error-turning-with-stop": "the reference forgets the stop",
     "error-turning-y": "the reference does not look at Y",

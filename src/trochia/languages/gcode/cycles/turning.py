@@ -72,13 +72,33 @@ class Frame:
 
 def _cycle(block: Block, state: State, sink: Sink) -> None:
     """G70 to G72.2: go to the start, and ask for the profile; :func:`finish` does the rest."""
+    _check_state(block, state)
+    sink.straight_traverse(end := target_of(block, state))
     number = as_integer(block.values["q"])
     if number is None:
         raise block.fault(ParseError, "Q is the whole number of a subroutine", "q", hint="Write it like Q100.")
-    sink.straight_traverse(end := target_of(block, state))
     state.position = end
     state.motion = 0
     state.profile = Profile(block, sink.line, number, (end[_Z], end[_X]))
+
+
+def _check_state(block: Block, state: State) -> None:
+    """Refuse a cycle that cannot begin, after what stands before it on its line has acted, as in the reference."""
+    assert block.motion is not None
+    name = block.motion.name
+    if "q" not in block.values:
+        raise block.fault(ParseError, f"{name} needs Q", name, hint="Q is the number of the subroutine that draws "
+                          "the profile: O100 SUB … O100 ENDSUB, G71 Q100.")  # fmt: skip
+    if state.compensation is not None:
+        raise block.fault(ModalConflictError, f"{name} cannot be used with cutter compensation", name,
+                          hint="Write G40 before it.")  # fmt: skip
+    if state.plane != Plane.ZX:
+        raise block.fault(ModalConflictError, f"{name} lies in the ZX plane", name, hint="Write G18 before it.")
+    for column in block.axes:
+        if column not in (_X, _Z):
+            letter = AXES[column]
+            raise block.fault(ParseError, f"{name} cannot move {letter}", letter.lower(),
+                              hint="Move it on a line of its own.")  # fmt: skip
 
 
 def finish(profile: Profile, there: Block, state: State, sink: Sink) -> None:
@@ -240,29 +260,12 @@ def _send(move: Move, block: Block, state: State, sink: Sink) -> None:
 
 def _check(block: Block, state: State) -> None:
     """Check the line of the cycle before anything on it acts."""
+    del state
     assert block.motion is not None
     name = block.motion.name
-    if "q" not in block.values:
-        raise block.fault(ParseError, f"{name} needs Q", name, hint="Q is the number of the subroutine that draws "
-                          "the profile: O100 SUB … O100 ENDSUB, G71 Q100.")  # fmt: skip
-    if _plane_of(block, state) != Plane.ZX:
-        raise block.fault(ModalConflictError, f"{name} lies in the ZX plane", name, hint="Write G18 before it.")
-    if state.compensation is not None or "compensation" in block.groups:
-        raise block.fault(ModalConflictError, f"{name} cannot be used with cutter compensation", name,
-                          hint="Write G40 before it.")  # fmt: skip
-    for column in block.axes:
-        if column not in (_X, _Z):
-            letter = AXES[column]
-            raise block.fault(ParseError, f"{name} cannot move {letter}", letter.lower(),
-                              hint="Move it on a line of its own.")  # fmt: skip
     if "stopping" in block.groups:
         raise block.fault(ModalConflictError, f"{block.groups['stopping'].name} cannot stand beside {name}",
                           block.groups["stopping"].name, hint="Use two lines.")  # fmt: skip
-
-
-def _plane_of(block: Block, state: State) -> Plane:
-    code = block.groups.get("plane")
-    return state.plane if code is None else {"G17": Plane.XY, "G18": Plane.ZX, "G19": Plane.YZ}[code.name]
 
 
 def _rows(*cycles: tuple[str, str]) -> Iterable[Code]:
