@@ -16,6 +16,10 @@ static void settle_taking(const trochia_frame *frame, const trochia_chain *chain
     turn->before = turn->after = fmin(before, after);
     if (turn->kind == TROCHIA_TURN_ARC)
         trochia_bridge_settle(frame, &a->curve, &b->curve, turn);
+    if (turn->kind == TROCHIA_TURN_ARC && !trochia_bridge_worth(frame, &a->curve, &b->curve, turn)) {
+        turn->before = turn->after = 0.0;
+        turn->kind = TROCHIA_TURN_STOP;
+    }
 }
 
 /* Settles the joint at the start of link i; links up to i + 2 are classified, or past the program's end. */

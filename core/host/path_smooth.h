@@ -71,6 +71,10 @@ void trochia_emit_overlap(trochia_reader *r, const trochia_curve *a, const troch
 void trochia_bridge_settle(const trochia_frame *frame, const trochia_curve *a, const trochia_curve *b,
                            trochia_turn *turn);
 
+/* Returns 0 where a stop is passed sooner than a settled bridge. */
+int trochia_bridge_worth(const trochia_frame *frame, const trochia_curve *a, const trochia_curve *b,
+                         const trochia_turn *turn);
+
 void trochia_bridge_make(const trochia_frame *frame, const trochia_curve *a, const trochia_curve *b,
                          const trochia_turn *turn, trochia_bridge *bridge);
 

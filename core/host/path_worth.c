@@ -1,4 +1,5 @@
-/* What a corner of two lines costs: stopped at, rounded by a triangle of x'', or passed as an overlap of its moves.
+/* What a corner of two lines costs: stopped at, rounded by a triangle of x'', or passed as an overlap of its moves; and
+ * whether a joint of an arc is worth its bridge.
  *
  * Of each the time from the middle of the one line to the middle of the other is found, as if all corners beside it
  * were alike: ramps of limited acceleration and jerk lead from the corner's speed to the greatest there is room for.
@@ -6,6 +7,9 @@
 #include <math.h>
 
 #include "host/path_smooth.h"
+
+/* Turning shares the limits with speeding up: what is left of jerk, as ramps turn out. */
+static const double LEFT_ON_ARCS = 0.35, LEFT_ON_SPLINES = 0.6;
 
 /* One line beside a corner: half its length, its greatest speed, and what its direction leaves of the limits. */
 typedef struct {
@@ -118,4 +122,61 @@ int trochia_corner_worth(const trochia_frame *frame, const trochia_curve *a, con
     if (overlap <= triangle)
         return overlap <= stop ? TROCHIA_TURN_OVERLAP : TROCHIA_TURN_STOP;
     return triangle <= stop ? TROCHIA_TURN_CORNER : TROCHIA_TURN_STOP;
+}
+
+/* Greatest of what the axes that a curve bends ask of their limits. */
+static double greatest_bent(const trochia_curve *curve, const double *parts, uint32_t n) {
+    if (curve->kind == TROCHIA_ARC_SEGMENT)
+        return fmax(parts[curve->first], parts[curve->second]);
+    double greatest = 0.0;
+    for (uint32_t i = 0; i < n; i++)
+        if (curve->c[2 * n + i] != 0.0 || curve->c[3 * n + i] != 0.0)
+            greatest = fmax(greatest, parts[i]);
+    return greatest;
+}
+
+/* A curve beside a joint, `direction` there: its own bend binds its pace; a piece of a spline goes on as far as speed
+ * needs. */
+static trochia_side side_at(const trochia_frame *frame, const trochia_curve *curve, const double *direction) {
+    const trochia_path_input *in = frame->in;
+    uint32_t n = frame->n;
+    trochia_side side = {0.5 * curve->length, fmin(curve->speed, left_by(direction, in->slowness, n)),
+                         left_by(direction, in->effort, n), left_by(direction, in->shake, n)};
+    if (curve->kind == TROCHIA_LINE)
+        return side;
+    side.pace = fmin(side.pace, 1.0 / sqrt(curve->kappa * greatest_bent(curve, in->effort, n)));
+    side.pace = fmin(side.pace, 1.0 / cbrt(curve->kappa * curve->kappa * greatest_bent(curve, in->shake, n)));
+    double part = curve->kind == TROCHIA_ARC_SEGMENT ? LEFT_ON_ARCS : LEFT_ON_SPLINES;
+    side.j *= part;
+    side.a *= sqrt(part);
+    if (curve->kind == TROCHIA_CUBIC)
+        side.way = fmax(side.way, 0.5 * side.pace * ramp_time(&side, side.pace));
+    return side;
+}
+
+/* Greatest even speed over a bridge. */
+static double bridge_speed(const trochia_path_input *in, const trochia_bridge *bridge, uint32_t n) {
+    double v = INFINITY;
+    for (int piece = 0; piece < 3; piece++) {
+        const double *c = bridge->c[piece];
+        double bend[9];
+        for (uint32_t i = 0; i < n; i++)
+            bend[i] = fmax(fabs(2.0 * c[2 * n + i]), fabs(2.0 * c[2 * n + i] + 6.0 * bridge->length * c[3 * n + i]));
+        v = fmin(v, fmin(sqrt(left_by(bend, in->effort, n)), cbrt(left_by(c + 3 * n, in->shake, n) / 6.0)));
+    }
+    return v;
+}
+
+int trochia_bridge_worth(const trochia_frame *frame, const trochia_curve *a, const trochia_curve *b,
+                         const trochia_turn *turn) {
+    const trochia_path_input *in = frame->in;
+    trochia_side before = side_at(frame, a, a->t1), after = side_at(frame, b, b->t0);
+    if (!in->paced || !(before.j < INFINITY) || !(after.j < INFINITY))
+        return 1;
+    trochia_bridge bridge;
+    trochia_bridge_make(frame, a, b, turn, &bridge);
+    double v = fmin(fmin(before.pace, after.pace), bridge_speed(in, &bridge, frame->n));
+    double stop = time_over(&before, 0.0, before.way) + time_over(&after, 0.0, after.way);
+    double pass = time_over(&before, v, before.way - turn->before) + time_over(&after, v, after.way - turn->after);
+    return pass + (fmin(turn->before, before.way) + fmin(turn->after, after.way)) / v <= stop;
 }

@@ -150,15 +150,18 @@ static double greatest_of(const double *vector, uint32_t n) {
     return size;
 }
 
-/* What x'' at the start of a segment is more than at the end of the one before: nothing (0); or only along x', where a
- * cubic meets a line and turns back less than it (then minus that part); or anything else (infinite). */
-static double kick_of(const trochia_segment *segment, const double *pool, uint32_t n) {
+/* What x'' at the start of a segment is more than at the end of the one before: nothing (0); or only along x', where
+ * one of them does not bend and the other, a cubic, turns back less than it (then minus that part; `in`: that is the
+ * one behind); or anything else (infinite). */
+static double kick_of(const trochia_segment *segment, const double *pool, uint32_t n, int *in) {
     double x[2][27], jump[9], along = 0.0, square = 0.0, size;
+    *in = 0;
     if (segment[0].kind == TROCHIA_LINE && segment[1].kind == TROCHIA_LINE)
         return 0.0;
     trochia_segment_at(&segment[0], pool, n, segment[0].length, 3, x[0]);
     trochia_segment_at(&segment[1], pool, n, 0.0, 3, x[1]);
-    size = fmax(greatest_of(x[0] + 2 * n, n), greatest_of(x[1] + 2 * n, n));
+    double before = greatest_of(x[0] + 2 * n, n), after = greatest_of(x[1] + 2 * n, n);
+    size = fmax(before, after);
     for (uint32_t i = 0; i < n; i++) {
         jump[i] = x[1][2 * n + i] - x[0][2 * n + i];
         along += jump[i] * x[1][n + i];
@@ -174,9 +177,9 @@ static double kick_of(const trochia_segment *segment, const double *pool, uint32
     size = fmax(size, fmax(greatest_of(x[0] + 2 * n, n), greatest_of(x[1] + 2 * n, n)));
     if (greatest_of(jump, n) <= SAME_BEND * size + STRAIGHT)
         return 0.0;
-    int corner = (segment[0].kind == TROCHIA_LINE && segment[1].kind == TROCHIA_CUBIC) ||
-                 (segment[0].kind == TROCHIA_CUBIC && segment[1].kind == TROCHIA_LINE);
-    if (corner && kick < 0.0 && greatest_of(across, n) <= ALONG * size + STRAIGHT)
+    *in = before < after;
+    int flat = fmin(before, after) <= ALONG * size + STRAIGHT;
+    if (flat && segment[*in].kind == TROCHIA_CUBIC && kick < 0.0 && greatest_of(across, n) <= ALONG * size + STRAIGHT)
         return -kick;
     return INFINITY;
 }
@@ -184,10 +187,11 @@ static double kick_of(const trochia_segment *segment, const double *pool, uint32
 /* What motion does at the joint after a segment. */
 static void load_joint(const trochia_segment *segment, const double *pool, uint32_t n, trochia_stretch *before,
                        trochia_stretch *after) {
-    double kick = kick_of(segment, pool, n);
+    int in;
+    double kick = kick_of(segment, pool, n, &in);
     if (kick == INFINITY)
         before->last = 1;
-    else if (segment[0].kind == TROCHIA_LINE)
+    else if (in)
         after->kick_in = kick;
     else
         before->kick_out = kick;

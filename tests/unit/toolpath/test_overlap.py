@@ -95,6 +95,20 @@ def test_a_corner_is_taken_as_it_costs_least(degrees, tolerance):
         assert times[0] <= min(times[1:]) * 1.002
 
 
+def test_an_overlap_is_passed_where_the_next_corner_bends_the_rest_of_its_line():
+    heading = np.radians(60 + 2.0 * np.arange(60))
+    ends = np.array([20.0, 0.0]) + 0.5 * np.cumsum(np.stack([np.cos(heading), np.sin(heading)], axis=1), axis=0)
+    chords = "\n".join(f"X{x:.12f} Y{y:.12f}" for x, y in ends)
+    program = gcode.read(f"G64 P0.003\nF6000\nG1 X20\n{chords}\nM2\n")
+    path = build(program, MILL, continuity=2)
+    assert (path.segments["kind"][1:3] == SegmentKind.CUBIC).all()
+    rows = np.array([1, 2])
+    assert np.abs(np.diff(path.points(rows, np.array([path.segments["length"][1], 0.0]), 2), axis=0)).max() > 1.0
+    trajectory = plan(path, MILL, program=program, profile="s-curve")
+    speeds = [float(v) for block in trajectory.blocks() for v in block["v"]]
+    assert min(speeds[1:]) > 1.0
+
+
 def test_program_and_corners_stay_inside_their_memory():
     text = "G64 P0.01\nF600\n" + "\n".join(f"G1 X{k % 2 * 10 + k // 4} Y{k // 2 % 2 * 10 + k // 4}" for k in range(400))
     program = gcode.read(text + "\nM2\n")

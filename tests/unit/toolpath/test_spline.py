@@ -11,6 +11,7 @@ from scipy.interpolate import BPoly
 
 from trochia.errors import PlanningError
 from trochia.machine.load import load
+from trochia.planner import plan
 from trochia.program import MOVE, MoveKind, PathMode, Program, TimeLaw
 from trochia.toolpath import SPLINE_ERROR as ERROR
 from trochia.toolpath import SegmentKind, build, measure
@@ -100,11 +101,22 @@ def test_parts_of_one_curve_join_without_a_stop_and_without_a_blend():
 def test_a_kink_between_curves_stops_or_is_blended_inside_the_tolerance():
     kinked = [CURVES["arch"], [[50, 0, 0], [60, 10, 0], [70, 10, 0], [80, 0, 0]]]
     assert build(program_of(kinked), MILL).segments["stop"].sum() == 2
-    for continuity in (1, 2):
-        blended = build(program_of(kinked, PathMode.BLEND, 0.05), MILL, continuity=continuity)
+    for continuity, tolerance in ((1, 0.05), (2, 0.5)):
+        blended = build(program_of(kinked, PathMode.BLEND, tolerance), MILL, continuity=continuity)
         assert blended.segments["stop"].sum() == 1
         points, _ = along(blended, 25)
-        assert 1e-3 < np.linalg.norm(points - [50, 0, 0], axis=1).min() <= 0.05
+        assert 1e-3 < np.linalg.norm(points - [50, 0, 0], axis=1).min() <= tolerance
+
+
+def test_a_kink_that_is_passed_slower_than_a_stop_takes_is_a_stop():
+    kinked = [CURVES["arch"], [[50, 0, 0], [60, 10, 0], [70, 10, 0], [80, 0, 0]]]
+    times = []
+    for mode, tolerance in ((PathMode.BLEND, 0.01), (PathMode.EXACT_PATH, 0.0)):
+        program = program_of(kinked, mode, tolerance)
+        path = build(program, MILL, continuity=2)
+        assert path.segments["stop"].sum() == 2
+        times.append(plan(path, MILL, program=program, profile="s-curve").duration)
+    assert times[0] == times[1]
 
 
 def test_inverse_time_is_that_of_the_whole_curve():
