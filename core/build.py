@@ -33,6 +33,7 @@ HEADERS = [
     "host/cubic_steps.h",
     "shared/protocol.h",
     "shared/frame.h",
+    "shared/pulses.h",
     "shared/timeline.h",
     "host/link.h",
     "host/timeline.h",

@@ -138,7 +138,7 @@ typedef struct {
     uint32_t clock;                   /* chip's time when this was made */
     uint32_t executed;                /* stream time run through */
     uint32_t caught_at;               /* stream time at which a watched input took its level */
-    int32_t position[TROCHIA_MOTORS]; /* steps made since reset */
+    int32_t position[TROCHIA_MOTORS]; /* steps made since reset: in motion those at the slice's start */
     uint16_t rate;
     uint16_t number; /* span under way */
     uint8_t state;

@@ -9,12 +9,18 @@ uint8_t estop_inputs;
 
 void beam_put(void) {
     uint8_t full = slices[slice_done & (SLICES - 1)].rate == TROCHIA_FULL_RATE;
-    board_beam(span_lit && full && !line.brake && !ended ? span_power : 0);
+    if (span_lit && full && !line.brake && !ended) {
+        GPIOR0 |= 1 << MAY_SHINE;
+        board_beam(span_power);
+    } else {
+        GPIOR0 &= (uint8_t)~(1 << MAY_SHINE);
+        board_beam(0);
+    }
 }
 
 void line_act(void);
 
-/* The entry at the ring's tail is due now; called by the step interrupt. */
+/* The entry at the ring's tail is due now; called by the step interrupt, which does by itself what happens often. */
 void line_act(void) {
     uint8_t at = isr_tail;
     uint8_t kind = step_ring[(uint8_t)(at + 2)];
@@ -27,18 +33,11 @@ void line_act(void) {
             outputs = step_ring[(uint8_t)(at + 7)];
             board_outputs(outputs);
         }
-        if (span_power != step_ring[(uint8_t)(at + 5)]) {
-            span_power = step_ring[(uint8_t)(at + 5)];
-            beam_put();
-        }
+        span_power = step_ring[(uint8_t)(at + 5)];
     } else {
-        slice_since = (uint16_t)(isr_at_high << 8 | isr_at_low);
-        slice_done++;
-        silent_slices++;
         ended = kind == TROCHIA_END;
-        if (span_power)
-            beam_put();
     }
+    beam_put();
     isr_tail = (uint8_t)(at + 8);
 }
 

@@ -15,6 +15,9 @@
 #define BOARD_OUTPUTS 4
 #define BOARD_QUEUE 1536
 #define BOARD_STEPS PINA
+#define BEAM_DUTY OCR4BL
+#define BEAM_MODE TCCR4A
+#define BEAM_ON (1 << COM4B1 | 1 << WGM40)
 
 #ifndef __ASSEMBLER__
 #include <avr/io.h>
@@ -24,6 +27,7 @@
 
 static const char board_name[12] = "mega-stepdir";
 static const uint8_t board_pins[BOARD_MOTORS] = {1 << 2, 1 << 3, 1 << 4, 1 << 5, 1 << 6, 1 << 7};
+static const uint8_t board_bits[BOARD_MOTORS] = {2, 3, 4, 5, 6, 7}; /* the same, counted */
 
 static inline void board_setup(void) {
     PORTD = 1 << 7; /* drives off */
@@ -38,6 +42,7 @@ static inline void board_setup(void) {
     PCMSK0 = 1 << 4 | 1 << 5 | 1 << 6;
     PCMSK2 = 1 << 0 | 1 << 1 | 1 << 2 | 1 << 3 | 1 << 7;
     PCICR = 1 << PCIE0 | 1 << PCIE2;
+    TCCR4B = 1 << WGM42 | 1 << CS41;
 }
 
 static inline void board_enable(uint8_t on) {
@@ -74,8 +79,7 @@ static inline void board_outputs(uint8_t levels) {
 static inline void board_beam(uint8_t power) {
     if (power) {
         OCR4B = power;
-        TCCR4A = 1 << COM4B1 | 1 << WGM40;
-        TCCR4B = 1 << WGM42 | 1 << CS41;
+        TCCR4A = BEAM_ON;
     } else {
         TCCR4A = 0; /* the pin is the port's again, and that is low */
     }

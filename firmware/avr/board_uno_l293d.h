@@ -6,7 +6,8 @@
  *   beam         D10, on or off (on from half power)   outputs 0, 1   D9 D2
  *   inputs 0 … 5 A0 … A5, with pull-ups
  *
- * Bits 2 … 7 of the outputs say how the windings are driven, see coils.h.  An entry's pin bits are motors. */
+ * Bits 2 … 7 of the outputs say how the windings are driven, see coils.h.  An entry's pin bits are motors, from bit 1
+ * on. */
 #ifndef TROCHIA_BOARD_H
 #define TROCHIA_BOARD_H
 
@@ -22,7 +23,8 @@
 #include "coils.h"
 
 static const char board_name[12] = "uno-l293d";
-static const uint8_t board_pins[BOARD_MOTORS] = {1 << 0, 1 << 1};
+static const uint8_t board_pins[BOARD_MOTORS] = {1 << 1, 1 << 2};
+static const uint8_t board_bits[BOARD_MOTORS] = {1, 2}; /* the same, counted */
 
 static inline void board_setup(void) {
     PORTD = 1 << 0 | 1 << 7; /* the register's outputs off, the bridges off */

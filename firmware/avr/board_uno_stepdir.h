@@ -15,12 +15,16 @@
 #define BOARD_QUEUE 768
 #define BOARD_STEPS PIND
 #define BOARD_FOURTH 1 /* bit of an entry */
+#define BEAM_DUTY OCR2A
+#define BEAM_MODE TCCR2A
+#define BEAM_ON (1 << COM2A1 | 1 << WGM21 | 1 << WGM20)
 
 #ifndef __ASSEMBLER__
 #include <avr/io.h>
 
 static const char board_name[12] = "uno-stepdir";
 static const uint8_t board_pins[BOARD_MOTORS] = {1 << 2, 1 << 3, 1 << 4, 1 << BOARD_FOURTH};
+static const uint8_t board_bits[BOARD_MOTORS] = {2, 3, 4, BOARD_FOURTH}; /* the same, counted */
 
 static inline void board_setup(void) {
     PORTB = 1 << 0 | 1 << 1 | 1 << 2; /* drives off; pull-ups */
@@ -32,6 +36,7 @@ static inline void board_setup(void) {
     PCMSK0 = 1 << 1 | 1 << 2;
     PCMSK1 = 1 << 0 | 1 << 1 | 1 << 2 | 1 << 5;
     PCICR = 1 << PCIE0 | 1 << PCIE1;
+    TCCR2B = 1 << CS21;
 }
 
 static inline void board_enable(uint8_t on) {
@@ -61,8 +66,7 @@ static inline void board_outputs(uint8_t levels) {
 static inline void board_beam(uint8_t power) {
     if (power) {
         OCR2A = power;
-        TCCR2A = 1 << COM2A1 | 1 << WGM21 | 1 << WGM20;
-        TCCR2B = 1 << CS21;
+        TCCR2A = BEAM_ON;
     } else {
         TCCR2A = 0; /* the pin is the port's again, and that is low */
     }

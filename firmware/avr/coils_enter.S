@@ -2,7 +2,7 @@
  * keeps itself. */
     .text
     .global coils_enter
-coils_enter: /* motors in r2 */
+coils_enter: /* motors in r2, from bit 1 on */
     push r0
     push r1
     .irp register, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 30, 31
@@ -10,6 +10,7 @@ coils_enter: /* motors in r2 */
     .endr
     clr r1
     mov r24, r2
+    lsr r24
     call coils_step
     .irp register, 31, 30, 27, 26, 25, 24, 23, 22, 21, 20, 19, 18
     pop r\register

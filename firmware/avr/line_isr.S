@@ -1,9 +1,9 @@
-/* The interrupt that makes pulses: entries of the ring (core/shared/timeline.h), each at its tick.
+/* The interrupt that makes pulses: entries of the ring (core/shared/pulses.h), each at its tick.
  *
  * Compare match A of timer 1, which runs freely.  It is armed from its own value, so a late interrupt makes the next
  * step no later; a compare value that has gone by when it is set would wait for a whole turn, so such an entry is
  * served at once.  Where the ring is empty it switches itself off.  What it needs is in registers of its own
- * (registers.h); entries that are no pulses go to C, line_act(). */
+ * (registers.h).  Entries that are no pulses go to C, line_act(), unless a slice ends or only the beam changes. */
 #include <avr/io.h>
 #include "board.h"
 
@@ -16,11 +16,18 @@
 #define AT_LOW r8
 #define AT_HIGH r9
 #define STATUS r10
-#define NOW_LOW r11
-#define NOW_HIGH r12
-#define TAIL r13
+#define TAIL r11
+#define KEPT r12 /* and r13: the pointer Z of whatever was interrupted */
+#define NOW_LOW r14
+#define NOW_HIGH r15
 #define ACTS _SFR_IO_ADDR(GPIOR0), 0
+#define GRID _SFR_IO_ADDR(GPIOR0), 1
+#define MAY_SHINE _SFR_IO_ADDR(GPIOR0), 2
 #define MATCH _SFR_IO_ADDR(TIFR1), OCF1A
+#define SLOT 128
+#define AFTER 44   /* ticks from here to the next match, so that pulses are 64 apart */
+#define SOON 20
+#define TOO_LATE 4 /* times 256 ticks */
 
 #ifdef BOARD_COILS /* a pulse is a call, and over when it returns */
     .macro raise
@@ -44,45 +51,64 @@
     .endm
 #endif
 
-    .macro wait cycles
-    .rept \cycles / 2
-    rjmp .+0
-    .endr
+    /* the pulse's width: as many times three cycles, and one */
+    .macro last with
+    in \with, _SFR_IO_ADDR(GPIOR1)
+9:  dec \with
+    brne 9b
+    .endm
+
+    /* armed for its tick; or for some ticks from now, where that is later */
+    .macro arm ticks, other
+    lds r30, TCNT1L
+    lds r31, TCNT1H
+    adiw r30, \ticks
+    cp r30, AT_LOW
+    cpc r31, AT_HIGH
+    brpl \other
+    sts OCR1AH, AT_HIGH
+    sts OCR1AL, AT_LOW
+    .endm
+
+    .macro return
+    movw r30, KEPT
+    out _SFR_IO_ADDR(SREG), STATUS
+    reti
     .endm
 
     .text
     .global TIMER1_COMPA_vect
 TIMER1_COMPA_vect:
     in STATUS, _SFR_IO_ADDR(SREG)
-again:
+    movw KEPT, r30
+    sbic GRID
+    rjmp grid
     raise
     dec COUNT
     breq reload
     add FRACTION, ADD
     adc AT_LOW, LOW
     adc AT_HIGH, HIGH
-    sts OCR1AH, AT_HIGH
-    sts OCR1AL, AT_LOW
-    wait 12
+    arm AFTER, late
+armed:
+    nop
+    last r30
     lower
-    lds NOW_LOW, TCNT1L
-    lds NOW_HIGH, TCNT1H
-    cp AT_LOW, NOW_LOW
-    cpc AT_HIGH, NOW_HIGH
-    brmi late
-    out _SFR_IO_ADDR(SREG), STATUS
-    reti
+    return
 late:
-    sbi MATCH /* clears it: it is served now, but no pulse comes closer than 64 cycles to the one before */
-    wait 24
-    rjmp again
+    sts OCR1AH, r31
+    sts OCR1AL, r30
+    sub r30, AT_LOW
+    sbc r31, AT_HIGH
+    cpi r31, TOO_LATE
+    brlo armed
+    rjmp dry
 
 reload:
     sbic ACTS
     rjmp act
 load:
-    push r30
-    push r31
+    last r30
     mov r30, TAIL
     ldi r31, hi8(step_ring)
     lds NOW_LOW, step_head
@@ -92,8 +118,6 @@ load:
     ld NOW_HIGH, Z+
     add AT_LOW, NOW_LOW
     adc AT_HIGH, NOW_HIGH
-    sts OCR1AH, AT_HIGH
-    sts OCR1AL, AT_LOW
     lower
     ld PINS, Z+
     ld COUNT, Z+
@@ -101,59 +125,149 @@ load:
     breq one
     brmi special
     inc COUNT
+    ldi r31, hi8(step_ring) /* the ring goes round between entries' halves, too */
     ld LOW, Z+
     ld HIGH, Z+
     ld ADD, Z+
     ld FRACTION, Z+
     mov TAIL, r30
     rjmp loaded
-special: /* it stays in the ring until it is done */
-    sbi ACTS
+special:
     clr COUNT
+    sbrc PINS, 7
+    rjmp slots
+    sbi ACTS /* it stays in the ring until it is done */
     clr PINS
+    inc COUNT
+    rjmp loaded
+slots:
+    sbi GRID
+    mov COUNT, PINS
+    ldi r31, 0x7f
+    and COUNT, r31
+    mov TAIL, r30
+    rjmp loaded
 one:
     inc COUNT
-    sbis ACTS
     mov TAIL, r30
 loaded:
-    pop r31
-    pop r30
-    lds NOW_LOW, TCNT1L
-    lds NOW_HIGH, TCNT1H
-    cp AT_LOW, NOW_LOW
-    cpc AT_HIGH, NOW_HIGH
-    brmi overdue
-    out _SFR_IO_ADDR(SREG), STATUS
-    reti
-overdue:
-    sbi MATCH
-    rjmp again
+    arm SOON, late_load
+    return
+late_load:
+    sts OCR1AH, r31
+    sts OCR1AL, r30
+    sub r30, AT_LOW
+    sbc r31, AT_HIGH
+    cpi r31, TOO_LATE
+    brsh missed
+    return
 dry:
-    wait 8
     lower
-    clr PINS
+missed: /* what is in the ring stays there and counts as not made; motion_work() sees to the rest */
     lds r30, TIMSK1
     andi r30, ~(1 << OCIE1A)
     sts TIMSK1, r30
     clr r30
     sts step_on, r30
-    pop r31
-    pop r30
-    out _SFR_IO_ADDR(SREG), STATUS
-    reti
+    return
+
+grid:
+    mov r30, TAIL
+    ldi r31, hi8(step_ring)
+    ld PINS, Z
+    raise
+    inc TAIL
+    dec COUNT
+    breq grid_ends
+    inc r30
+    ld NOW_LOW, Z
+    ldi r30, SLOT
+    clr r31
+    sbrc NOW_LOW, 0
+    rjmp gap
+next:
+    add AT_LOW, r30
+    adc AT_HIGH, r31
+    arm AFTER, grid_late
+    last r30
+    lower
+    return
+grid_late:
+    rjmp late
+gap: /* slots without pulses */
+    inc TAIL
+    dec COUNT
+    lsr NOW_LOW
+    lsr NOW_LOW
+    clr NOW_HIGH
+    ror NOW_HIGH
+    add AT_LOW, NOW_HIGH
+    adc AT_HIGH, NOW_LOW
+    rjmp next
+grid_ends:
+    cbi GRID
+    ldi r31, 3 /* to the next multiple of four */
+    add TAIL, r31
+    ldi r31, ~3
+    and TAIL, r31
+    rjmp load
 
 act:
+    cbi ACTS
+    mov r30, TAIL
+    subi r30, -2
+    ldi r31, hi8(step_ring)
+    ld NOW_LOW, Z
+    dec NOW_LOW
+    breq begins
+    brpl whole
+    sts slice_since, AT_LOW /* a mark */
+    sts slice_since + 1, AT_HIGH
+    lds r30, slice_done
+    inc r30
+    sts slice_done, r30
+    lds r30, silent_slices
+    lds r31, silent_slices + 1
+    adiw r30, 1
+    sts silent_slices + 1, r31
+    sts silent_slices, r30
+done:
+    ldi r30, 8
+    add TAIL, r30
+    rjmp load
+begins: /* a span that only changes the beam, if anything */
+    subi r30, -4
+    ldi r31, hi8(step_ring)
+    ld NOW_LOW, Z
+    sbrs NOW_LOW, 7
+    rjmp whole
+#ifdef BEAM_MODE
+    dec r30
+    ld r30, Z
+    sts span_power, r30
+    ldi r31, BEAM_ON
+    sbis MAY_SHINE
+    clr r30
+    tst r30
+    brne 1f
+    clr r31
+1:  sts BEAM_DUTY, r30
+    sts BEAM_MODE, r31
+    rjmp done
+#endif
+whole:
+    movw r30, KEPT
     push r0
     push r1
     .irp register, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 30, 31
     push r\register
     .endr
     clr r1
-    cbi ACTS
     call line_act
     .irp register, 31, 30, 27, 26, 25, 24, 23, 22, 21, 20, 19, 18
     pop r\register
     .endr
     pop r1
     pop r0
+    movw KEPT, r30
     rjmp load

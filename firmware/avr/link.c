@@ -20,26 +20,12 @@ enum { SEND_ACK = 1, SEND_STATUS = 2, SEND_ANSWER = 4 };
 
 extern volatile uint16_t silent_slices;
 
-static volatile uint8_t received[RECEIVE], received_head;
+volatile uint8_t received[RECEIVE], received_head; /* line_io.S */
 static uint8_t received_tail;
-static uint8_t sending[SEND];
-static volatile uint8_t send_next, send_end;
+uint8_t sending[SEND];
+volatile uint8_t send_next, send_end;
 static trochia_frame_in in;
 static uint8_t expected, greeted, session, wanted, reset_by;
-
-ISR(USART_RX_vect) {
-    uint8_t head = received_head, byte = UDR0;
-    received[head] = byte;
-    if (!byte)
-        motion_note();
-    received_head = (uint8_t)(head + 1) & (RECEIVE - 1);
-}
-
-ISR(USART_UDRE_vect) {
-    UDR0 = sending[send_next++];
-    if (send_next == send_end)
-        UCSR0B &= (uint8_t)~(1 << UDRIE0);
-}
 
 void link_setup(uint8_t reset_flags) {
     reset_by = reset_flags;
@@ -60,8 +46,11 @@ static uint16_t never_used(void) {
 
 static void put(trochia_frame_out *out, const void *payload, uint8_t size) {
     const uint8_t *bytes = payload;
-    for (uint8_t i = 0; i < size; i++)
+    for (uint8_t i = 0; i < size; i++) {
         trochia_frame_put(out, bytes[i]);
+        if (i % 16 == 15)
+            motion_work(); /* it may not wait that long */
+    }
 }
 
 static void answer(trochia_frame_out *out) {
@@ -88,8 +77,8 @@ static void send(void) {
         wanted = 0;
         motion_tell(&status);
         status.expected = expected;
-        trochia_frame_begin(&out, sending, 0, TROCHIA_STATUS);
         motion_work();
+        trochia_frame_begin(&out, sending, 0, TROCHIA_STATUS);
         put(&out, &status, sizeof status);
     } else {
         trochia_ack ack = {.expected = expected, .epoch = motion_epoch(), .room = motion_room()};

@@ -2,28 +2,39 @@
 
 #include <string.h>
 
-enum { LEAD = 1600 /* ticks from GO to the first slice */ };
+enum {
+    ONLY_BEAM = 128, /* flag of an entry: neither directions nor outputs change; line_isr.S knows it */
+    LEAD = 1600,     /* ticks from GO to the first slice */
+    ROOM = TROCHIA_CHUNK + TROCHIA_SPARE + 24
+};
 
 uint8_t step_ring[256] __attribute__((section(".ring,\"aw\",@nobits;")));
 volatile uint8_t step_head, step_on;
 trochia_timeline line;
+
+_Static_assert(__builtin_offsetof(trochia_motor, run.phase) == 9, "rows.S relies on it");
+_Static_assert(__builtin_offsetof(trochia_motor, run.add2_low) == 26, "rows.S relies on it");
+_Static_assert(__builtin_offsetof(trochia_motor, on) == 33, "rows.S relies on it");
+_Static_assert(__builtin_offsetof(trochia_row, extra) == 19, "rows.S relies on it");
 slice_begin slices[SLICES];
 uint16_t silence_most;
-static uint8_t state, cause, epoch, enabled, underway, end_put;
+uint8_t state, cause, epoch, enabled, underway, end_put;
+uint32_t caught_at;
 static uint16_t next_number;
-static uint32_t caught_at, span_duration;
+static uint8_t outputs_put; /* levels, when all that is in the ring has happened */
+static uint32_t span_duration;
 
 void motion_setup(void) {
     for (uint8_t i = 0; i < BOARD_MOTORS; i++)
         line.motors[i].pin = board_pins[i];
     trochia_timeline_begin(&line);
+    GPIOR1 = 1;
+    isr_count = 0;
     TCCR1B = 1 << CS10;
     TIMSK1 = 1 << TOIE1;
 }
 
 static volatile uint16_t overflows;
-volatile uint16_t noted_at, noted_since;
-volatile uint8_t noted_slice;
 
 ISR(TIMER1_OVF_vect) {
     overflows++;
@@ -42,71 +53,6 @@ uint32_t motion_clock(void) {
 
 static void interrupt_off(void) {
     TIMSK1 &= (uint8_t)~(1 << OCIE1A);
-}
-
-/* Steps of a motor that are in the ring but not yet at the pins. */
-static void take_back(int32_t *position) {
-    uint8_t tail, pins, count, head = line.head, back;
-    ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
-        tail = isr_tail;
-        pins = isr_pins;
-        count = isr_count;
-        back = directions;
-    }
-    if (!step_on)
-        count = 0;
-    for (;;) {
-        for (uint8_t i = 0; i < BOARD_MOTORS; i++) {
-            if (count && pins & board_pins[i])
-                position[i] += back & 1 << i ? count : -(int16_t)count;
-        }
-        if (tail == head)
-            return;
-        pins = step_ring[(uint8_t)(tail + 2)];
-        count = step_ring[(uint8_t)(tail + 3)];
-        if (count == 0) {
-            if (pins == TROCHIA_ACT)
-                back ^= step_ring[(uint8_t)(tail + 4)];
-            tail = (uint8_t)(tail + 8);
-        } else {
-            tail = (uint8_t)(tail + (count > 1 ? 8 : 4));
-        }
-    }
-}
-
-static uint32_t stream_at(uint8_t slice, uint16_t after) {
-    const slice_begin *begin = &slices[slice & (SLICES - 1)];
-    if (after > TROCHIA_SLICE)
-        after = TROCHIA_SLICE;
-    return begin->stream + ((uint32_t)after * begin->rate >> 15);
-}
-
-/* Stream time run through, and the rate, at an instant. */
-static uint32_t executed(uint8_t slice, uint16_t after, uint16_t *rate) {
-    *rate = 0;
-    if (!underway || ended)
-        return line.stream;
-    if (after >= 0x8000) /* before the first slice */
-        after = 0;
-    /* smoothed: the next slice's is not always known yet, the last one's is */
-    uint16_t before = slices[(slice - 1) & (SLICES - 1)].rate, begin = slices[slice & (SLICES - 1)].rate;
-    if (after > TROCHIA_SLICE)
-        after = TROCHIA_SLICE;
-    *rate = (uint16_t)((int32_t)before + ((int32_t)((int32_t)begin - before) * after >> 14));
-    uint32_t at = stream_at(slice, after);
-    if (end_put && (int32_t)(at - line.stream) > 0)
-        at = line.stream;
-    return at;
-}
-
-static uint32_t executed_now(void) {
-    uint8_t slice;
-    uint16_t after, rate;
-    ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
-        slice = slice_done;
-        after = (uint16_t)(TCNT1 - slice_since);
-    }
-    return executed(slice, after, &rate);
 }
 
 static void finish(uint8_t to, uint8_t why) {
@@ -133,11 +79,13 @@ void motion_stop(uint8_t why) {
     for (uint8_t i = 0; i < BOARD_MOTORS; i++)
         line.motors[i].position = position[i];
     line.stream = at;
+    isr_tail = (uint8_t)(isr_tail + 3) & (uint8_t)~3; /* an entry's place, also from within a grid */
     line.head = step_head = isr_tail;
     line.backwards = directions;
     line.loaded = 0;
     line.length = 0;
     GPIOR0 = 0;
+    outputs_put = outputs;
     step_on = 0;
     isr_count = 0;
     if (state == TROCHIA_RUNNING || state == TROCHIA_LOADING || why != TROCHIA_ORDERED) {
@@ -224,6 +172,7 @@ void motion_switch(const trochia_put *order) {
         if (order->lit != 255)
             span_lit = order->lit;
         outputs = (uint8_t)((outputs & ~order->mask) | (order->outputs & order->mask));
+        outputs_put = outputs;
         board_outputs(outputs);
         beam_put();
     }
@@ -247,6 +196,7 @@ void motion_greet(const trochia_hello *hello) {
     motion_brake(TROCHIA_ORDERED);
     silence_most = hello->silence;
     estop_inputs = hello->estop;
+    GPIOR1 = (uint8_t)(hello->width + 1);
 }
 
 /* Takes the next span up; returns whether there was one. */
@@ -269,8 +219,12 @@ static uint8_t take_up(void) {
         else
             back = (uint8_t)(back & ~(1 << i));
     }
-    const uint8_t four[4] = {(uint8_t)(back ^ line.backwards), span.power, span.flags, span.outputs};
-    trochia_timeline_special(&line, (uint16_t)start, TROCHIA_ACT, four);
+    uint8_t four[4] = {(uint8_t)(back ^ line.backwards), span.power, span.flags & TROCHIA_SET_OUTPUTS, span.outputs};
+    if (!four[0] && (!four[2] || span.outputs == outputs_put))
+        four[2] = ONLY_BEAM;
+    if (four[2] == TROCHIA_SET_OUTPUTS)
+        outputs_put = span.outputs;
+    trochia_timeline_act(&line, (uint16_t)start, four);
     line.backwards = back;
     return 1;
 }
@@ -278,6 +232,8 @@ static uint8_t take_up(void) {
 static void note_slice(void) {
     slice_begin *begin = &slices[line.marked & (SLICES - 1)];
     begin->stream = line.stream;
+    for (uint8_t i = 0; i < BOARD_MOTORS; i++)
+        begin->steps[i] = (uint16_t)line.motors[i].position;
     begin->rate = line.rate;
 }
 
@@ -306,11 +262,14 @@ void motion_go(void) {
     slice_done = line.marked;
     note_slice();
     slices[(line.marked - 1) & (SLICES - 1)].rate = line.rate;
+    ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+        beam_put();
+    }
 }
 
 static void fill(void) {
     while (!end_put) {
-        if (line.length == 0 && (uint8_t)(line.marked - slice_done) >= TROCHIA_AHEAD - 1)
+        if (line.length == 0 && (uint8_t)(line.marked - slice_done) >= TROCHIA_AHEAD)
             return;
         uint8_t told = trochia_timeline_fill(&line);
         slices[(told == TROCHIA_SLICED ? line.marked - 1 : line.marked) & (SLICES - 1)].rate = line.rate;
@@ -318,8 +277,12 @@ static void fill(void) {
             note_slice();
             continue;
         }
-        if (told == TROCHIA_FULL && trochia_timeline_space(&line) < 128)
-            return; /* there is enough for a while: the link's turn */
+        if (told == TROCHIA_CROWDED) {
+            motion_stop(TROCHIA_MISSED);
+            return;
+        }
+        if (told == TROCHIA_FULL && trochia_timeline_space(&line) < ROOM)
+            return;
         if (told == TROCHIA_FULL)
             continue;
         if (told == TROCHIA_NEED && trochia_timeline_space(&line) >= 20 && take_up())
@@ -365,36 +328,4 @@ uint16_t motion_room(void) {
 }
 uint8_t motion_epoch(void) {
     return epoch;
-}
-
-void motion_tell(trochia_status *told) {
-    int32_t position[BOARD_MOTORS];
-    for (uint8_t i = 0; i < BOARD_MOTORS; i++)
-        position[i] = line.motors[i].position;
-    take_back(position);
-    for (uint8_t i = 0; i < TROCHIA_MOTORS; i++)
-        told->position[i] = i < BOARD_MOTORS ? position[i] : 0;
-    uint8_t slice;
-    uint16_t at, since, late;
-    ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
-        at = noted_at;
-        since = noted_since;
-        slice = noted_slice;
-    }
-    told->clock = motion_clock();
-    late = (uint16_t)((uint16_t)told->clock - at);
-    told->clock -= late;
-    told->executed = executed(slice, (uint16_t)(at - since), &told->rate);
-    told->epoch = epoch;
-    told->room = queue_free();
-    told->caught_at = caught_at;
-    told->number = line.number;
-    told->state = state;
-    told->cause = cause;
-    told->inputs = board_inputs();
-    told->outputs = outputs;
-    told->beam = board_beam_power();
-    told->enabled = enabled;
-    told->caught = caught;
-    told->worst = 0;
 }

@@ -8,17 +8,6 @@
 
 #include "shared/protocol.h"
 
-/* When the last frame ended: that is the instant a status speaks of, however long it takes to make one. */
-extern volatile uint16_t noted_at, noted_since;
-extern volatile uint8_t noted_slice, slice_done;
-extern volatile uint16_t slice_since;
-
-static inline void motion_note(void) {
-    noted_at = TCNT1;
-    noted_since = slice_since;
-    noted_slice = slice_done;
-}
-
 void motion_setup(void);
 
 /* Goes on with the time line; to be called at least every few hundred microseconds. */
@@ -41,7 +30,7 @@ void motion_greet(const trochia_hello *hello);
 uint16_t motion_room(void);
 uint8_t motion_epoch(void);
 
-/* All of a status but `expected`. */
+/* All of a status but `expected`; it speaks of the instant at which the last frame ended (line_io.S). */
 void motion_tell(trochia_status *status);
 
 #endif

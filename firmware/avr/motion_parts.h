@@ -20,11 +20,27 @@ extern volatile uint8_t step_head, step_on;
         __asm__ volatile("" ::: "memory");                                                                             \
         (line)->head = step_head = (uint8_t)(i);                                                                       \
     } while (0)
+/* grid.S, rows.S */
+#define TROCHIA_BEND(run) run_bend(run)
+#define TROCHIA_PLACE(line, row, most) row_place(row, most)
+#define TROCHIA_CLEAR(line, from, slots) row_clear(from, slots)
+#define TROCHIA_ROW(motor, row) row_full(motor, row)
+#define TROCHIA_ROW_BRISK(motor, row) row_brisk(motor, row)
+struct trochia_row;
+struct trochia_motor;
+uint8_t row_full(struct trochia_motor *motor, struct trochia_row *row);
+uint8_t row_brisk(struct trochia_motor *motor, struct trochia_row *row);
+uint8_t row_place(struct trochia_row *row, uint8_t most);
+#define TROCHIA_PACK(line, to, from, slots) slots_pack(to, from, slots)
+uint8_t slots_pack(uint8_t to, uint8_t from, uint8_t slots);
+void run_bend(void *run);
+void row_clear(uint8_t from, uint8_t slots);
 #include "shared/timeline.h"
 
-/* Stream time and rate at the start of the last few slices, by the slice's number. */
+/* Stream time, rate and steps made at the start of the last few slices, by the slice's number. */
 typedef struct {
     uint32_t stream;
+    uint16_t steps[BOARD_MOTORS]; /* lower half */
     uint16_t rate;
 } slice_begin;
 
@@ -42,9 +58,25 @@ extern volatile uint8_t caught, caught_slice, caught_new, estop_seen;
 extern volatile uint16_t caught_after, silent_slices;
 extern volatile uint8_t ended; /* END has been reached */
 
+/* When the last frame ended: that is the instant a status speaks of, however long it takes to make one. */
+extern volatile uint16_t noted_at, noted_since;
+extern volatile uint8_t noted_slice;
+
 extern trochia_look watched;
 extern uint8_t estop_inputs;
 extern uint16_t silence_most;
+
+/* How things stand (motion.c). */
+extern uint8_t state, cause, epoch, enabled, end_put;
+extern uint8_t underway; /* 2: the interrupt is still to be started */
+extern uint32_t caught_at;
+
+/* Takes steps off positions that are in the ring but not yet at the pins (where.c). */
+void take_back(int32_t *position);
+
+/* Stream time some ticks after a slice began, and now. */
+uint32_t stream_at(uint8_t slice, uint16_t after);
+uint32_t executed_now(void);
 
 /* Looks at watched inputs; with interrupts off. */
 void watch_look(void);

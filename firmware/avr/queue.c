@@ -1,6 +1,8 @@
 /* Spans that wait, as the bytes they came in. */
 #include "motion_parts.h"
 
+#include <string.h>
+
 static uint8_t bytes[BOARD_QUEUE];
 static uint16_t head, used;
 
@@ -17,24 +19,30 @@ static uint16_t place(uint16_t offset) {
     return at >= BOARD_QUEUE ? (uint16_t)(at - BOARD_QUEUE) : at;
 }
 
+/* How many of some bytes lie before the memory's end. */
+static uint8_t before_end(uint16_t at, uint8_t size) {
+    uint16_t left = (uint16_t)(BOARD_QUEUE - at);
+    if (left < size)
+        size = (uint8_t)left;
+    return size;
+}
+
 uint8_t queue_put(const uint8_t *payload, uint8_t size) {
     if (size > queue_free())
         return 0;
     uint16_t at = place(used);
-    for (uint8_t i = 0; i < size; i++) {
-        bytes[at] = payload[i];
-        at = at + 1 == BOARD_QUEUE ? 0 : at + 1;
-    }
+    uint8_t first = before_end(at, size);
+    memcpy(bytes + at, payload, first);
+    memcpy(bytes, payload + first, (uint8_t)(size - first));
     used = (uint16_t)(used + size);
     return 1;
 }
 
 static void read(uint16_t offset, uint8_t *to, uint8_t size) {
     uint16_t at = place(offset);
-    for (uint8_t i = 0; i < size; i++) {
-        to[i] = bytes[at];
-        at = at + 1 == BOARD_QUEUE ? 0 : at + 1;
-    }
+    uint8_t first = before_end(at, size);
+    memcpy(to, bytes + at, first);
+    memcpy(to + first, bytes, (uint8_t)(size - first));
 }
 
 uint8_t queue_get(uint8_t *to, uint8_t size) {

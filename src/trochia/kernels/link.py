@@ -147,6 +147,54 @@ def fit_one(ticks: NDArray[np.int64], tolerance: float) -> tuple[Any, NDArray[np
     return part, np.concatenate([ticks[:1], at])
 
 
+class Executed(NamedTuple):
+    """What a chip makes of spans.
+
+    Attributes
+    ----------
+    pulses
+        In order (pulses,), of dtype ``PULSE``.
+    stream
+        Stream time run through [ticks].
+    rate
+        At which it ended, of ``FULL_RATE``.
+    position
+        Steps each motor has made (MOTORS,).
+    crowded
+        Whether it ended because steps of a motor were closer than the grid can take.
+    """
+
+    pulses: NDArray[np.void]
+    stream: int
+    rate: int
+    position: NDArray[np.int64]
+    crowded: bool
+
+
+def executed(spans: bytes, *, brake: int = -1) -> Executed:
+    """Return what a chip makes of spans: at full rate; or, with ``brake``, as one that holds them all.
+
+    Parameters
+    ----------
+    brake
+        The slice from which on it brakes; 0: only where what it holds would no longer do to stop in.
+
+    Raises
+    ------
+    ValueError
+        For bytes that are no spans.
+    """
+    line = ffi.new("trochia_timeline *")
+    count = lib.trochia_timeline_pulses(line, spans, len(spans), brake, 0, ffi.NULL)
+    if count < 0:
+        raise ValueError("these bytes are no spans")
+    made = np.empty(count, PULSE)
+    line = ffi.new("trochia_timeline *")
+    lib.trochia_timeline_pulses(line, spans, len(spans), brake, count, pointer(made, "trochia_pulse_at *"))
+    position = np.array([motor.position for motor in line.motors], np.int64)
+    return Executed(made, int(line.stream), int(line.rate), position, bool(line.crowded))
+
+
 def pulses(spans: bytes) -> NDArray[np.void]:
     """Return the pulses a chip makes of spans at full rate (pulses,), of dtype ``PULSE``.
 
@@ -155,11 +203,4 @@ def pulses(spans: bytes) -> NDArray[np.void]:
     ValueError
         For bytes that are no spans.
     """
-    line = ffi.new("trochia_timeline *")
-    count = lib.trochia_timeline_pulses(line, spans, len(spans), 0, ffi.NULL)
-    if count < 0:
-        raise ValueError("these bytes are no spans")
-    made = np.empty(count, PULSE)
-    line = ffi.new("trochia_timeline *")
-    lib.trochia_timeline_pulses(line, spans, len(spans), count, pointer(made, "trochia_pulse_at *"))
-    return made
+    return executed(spans).pulses

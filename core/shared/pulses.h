@@ -1,0 +1,391 @@
+/* Steps of several motors to one line of pulses.
+ *
+ * One motor alone gets its pulses at their ticks, as many as have one interval in one entry.  Several, and one whose
+ * interval changes often, share a grid: a slot is 2^7 ticks, a byte of pins, and its pulses come in its middle, so
+ * no more than half a slot from their tick; no step is merged with another, and what a step costs is an addition.
+ * Slots without pulses are one byte together: their number times two, and one; bit 0 is nobody's pin.
+ *
+ * Entries of the ring, from which the interrupt lives, begin at multiples of four: ticks since the entry before (16
+ * bits), pins, count.  If count is 0, `pins` is a trochia_entry, and four bytes follow, or the slots.  If it is above
+ * 1, it is as many pulses, and what follows is the interval between them [ticks, 16 bits], its fraction and the
+ * fraction of the first [2^-8].
+ *
+ * Legend: due = a motor's next step, from the slice's start [2^-8 ticks of stream time]; real = the same in the chip's
+ * own time; slice, span, rate, hand: timeline.h. */
+#ifndef TROCHIA_PULSES_H
+#define TROCHIA_PULSES_H
+
+#include <stdint.h>
+
+#include "shared/protocol.h"
+
+#ifndef TROCHIA_RING /* a chip says for itself where its ring is, and how many motors it has */
+#define TROCHIA_RING(line, i) ((line)->ring[(uint8_t)(i)])
+#define TROCHIA_TAIL(line) ((line)->tail)
+#define TROCHIA_PUBLISH(line, i) ((line)->head = (uint8_t)(i))
+#define TROCHIA_RING_INSIDE 1
+enum trochia_timeline_size { TROCHIA_TIMELINE_MOTORS = 6 };
+#endif
+
+#ifndef TROCHIA_BEND /* a chip has them in its own instructions, or these */
+#define TROCHIA_BEND trochia_segment_bend
+#define TROCHIA_PLACE trochia_row_place
+#define TROCHIA_CLEAR trochia_row_clear
+#define TROCHIA_PACK trochia_slots_pack
+#define TROCHIA_ROW(motor, row) 0       /* what it can do by itself of trochia_timeline_row at full rate: whether all */
+#define TROCHIA_ROW_BRISK(motor, row) 0 /* and at more than half of it */
+#endif
+
+enum trochia_entry {
+    TROCHIA_MARK = 0,  /* a slice ends; what follows: nothing */
+    TROCHIA_ACT = 1,   /* a span begins; what follows: motors that turn round, power, flags and outputs of the span */
+    TROCHIA_END = 2,   /* motion has ended */
+    TROCHIA_LIGHT = 3, /* the rate is full from here on, or no longer */
+    TROCHIA_GRID = 128 /* and as many bytes of slots as the lower bits say */
+};
+
+enum trochia_far { TROCHIA_LONG = 1L << 22 /* no two steps so far apart are in one slice [2^-8 ticks] */ };
+
+enum trochia_timeline_bounds {
+    TROCHIA_LONGEST_RUN = 100,
+    TROCHIA_AHEAD = 3,
+    TROCHIA_SLOT = 128,  /* ticks */
+    TROCHIA_CHUNK = 64,  /* slots that are filled at once */
+    TROCHIA_SPARE = 4,   /* more, for steps that found theirs taken where a span ends */
+    TROCHIA_APART = 64,  /* ticks between pulses, at least */
+    TROCHIA_SPECIAL = 32 /* ticks from a pulse to an entry that is none */
+};
+
+typedef struct trochia_motor {
+    int32_t due;
+    trochia_segment_run run;
+    int32_t position; /* with the steps that are on their way to the pins */
+    uint8_t pin;      /* bits of its step pins in an entry */
+    uint8_t on;       /* whether a step is due in this span */
+} trochia_motor;
+
+typedef struct {
+    trochia_motor motors[TROCHIA_TIMELINE_MOTORS];
+    uint32_t left;    /* of the span, from the slice's start [ticks of stream time] */
+    uint32_t stream;  /* stream time at the slice's start */
+    uint32_t hand;    /* of the spans that wait; see legend */
+    uint32_t stretch; /* real ticks a tick of stream time [2^-8]; 256 at full rate */
+    uint16_t slew;    /* of the span */
+    uint16_t rate;
+    uint16_t length; /* stream time of the slice; 0: none is begun */
+    uint16_t last;   /* real tick of the last entry in the slice */
+    uint16_t number; /* of the span */
+    uint16_t extra;  /* the stretch less one, where it is below two [2^-16]: then */
+    uint8_t brisk;   /* says so, and costs less */
+    uint8_t full;    /* the rate is */
+    uint8_t backwards;
+    uint8_t brake, rest; /* being stopped; the last span held ends at rest */
+    uint8_t crowded;
+    uint8_t dense;  /* the slice's last chunk is still to come */
+    uint8_t marked; /* slices whose end is in the ring, counted on */
+    uint8_t loaded;
+    uint8_t head;
+#ifdef TROCHIA_RING_INSIDE
+    uint8_t tail;
+    uint8_t ring[256];
+#endif
+} trochia_timeline;
+
+/* One motor's steps of one interval, on their way into slots. */
+typedef struct trochia_row {
+    uint32_t real;     /* of the first [2^-8 ticks] */
+    uint32_t interval; /* [2^-8 ticks] */
+    int32_t bound;     /* steps due from here on are not put [2^-8 ticks of stream time] */
+    uint16_t until;    /* nor those from here on [ticks], unless it is the span's or the slice's last chunk */
+    uint8_t base;      /* place of the slice's first slot in the ring */
+    uint8_t free;      /* first slot that is the motor's */
+    uint8_t stop;      /* first slot that is nobody's */
+    uint8_t pin;
+    uint8_t last;
+    uint16_t extra; /* of the time line */
+} trochia_row;
+
+static inline uint8_t trochia_timeline_space(const trochia_timeline *line) {
+    return (uint8_t)(TROCHIA_TAIL(line) - line->head - 1);
+}
+
+/* Stream time from the slice's start to real time [ticks]. */
+static inline uint16_t trochia_real(const trochia_timeline *line, uint16_t at) {
+    if (line->full)
+        return at;
+    if (line->brisk)
+        return (uint16_t)(at + (uint16_t)((uint32_t)at * line->extra >> 16));
+    return (uint16_t)((uint32_t)at * line->stretch >> 8);
+}
+
+/* The same with a fraction [2^-8 ticks]; intervals above a slice stay above one. */
+static inline uint32_t trochia_real_fine(const trochia_timeline *line, uint32_t at) {
+    if (line->full || at >= (uint32_t)TROCHIA_LONG)
+        return at;
+    uint16_t ticks = (uint16_t)(at >> 8);
+    if (line->brisk)
+        return at + (((uint32_t)ticks * line->extra + ((uint32_t)(uint8_t)at * line->extra >> 8)) >> 8);
+    uint32_t real = (uint32_t)ticks * line->stretch;
+    return real < (uint32_t)TROCHIA_LONG ? real + ((uint8_t)at * line->stretch >> 8) : (uint32_t)TROCHIA_LONG;
+}
+
+/* Ticks from the last entry to a real time, or to `gap` after the last entry if that is later; that is the last then.
+ */
+static inline uint16_t trochia_timeline_delta(trochia_timeline *line, uint16_t real, uint8_t gap) {
+    uint16_t delta = (uint16_t)(real - line->last);
+    if ((int16_t)(delta - gap) < 0)
+        delta = gap;
+    line->last = (uint16_t)(line->last + delta);
+    return delta;
+}
+
+/* The four bytes every entry has; returns where those after it go. */
+static inline uint8_t trochia_timeline_put(trochia_timeline *line, uint16_t delta, uint8_t pins, uint8_t count) {
+    uint8_t head = line->head;
+    TROCHIA_RING(line, head++) = (uint8_t)delta;
+    TROCHIA_RING(line, head++) = (uint8_t)(delta >> 8);
+    TROCHIA_RING(line, head++) = pins;
+    TROCHIA_RING(line, head++) = count;
+    return head;
+}
+
+/* An entry that is no pulse, at a real time of the slice; four bytes that mean nothing follow. */
+static inline void trochia_timeline_special(trochia_timeline *line, uint16_t real, uint8_t kind) {
+    uint16_t delta = trochia_timeline_delta(line, real, TROCHIA_SPECIAL);
+    TROCHIA_PUBLISH(line, (uint8_t)(trochia_timeline_put(line, delta, kind, 0) + 4));
+}
+
+/* The start of a span: motors that turn round, power, flags and outputs. */
+static inline void trochia_timeline_act(trochia_timeline *line, uint16_t at, const uint8_t *four) {
+    uint16_t delta = trochia_timeline_delta(line, trochia_real(line, at), TROCHIA_SPECIAL);
+    uint8_t head = trochia_timeline_put(line, delta, TROCHIA_ACT, 0);
+    for (uint8_t i = 0; i < 4; i++)
+        TROCHIA_RING(line, head++) = four[i];
+    TROCHIA_PUBLISH(line, head);
+}
+
+/* Ticks ahead as they are counted here: what is longer than any span is all the same. */
+static inline int32_t trochia_ahead(uint32_t ticks) {
+    const uint32_t never = (uint32_t)1 << 30;
+    return (int32_t)(ticks < never ? ticks : never);
+}
+
+/* From a motor's next step to the one after `steps` [2^-8 ticks]. */
+static inline int32_t trochia_steps_ahead(const trochia_segment_run *run, uint8_t steps) {
+    return steps == 1 ? trochia_ahead(run->interval) : (int32_t)(run->interval * steps);
+}
+
+/* Moves a motor on by steps of its present interval, at most as many as there are; `due` is the next one then. */
+static inline void trochia_motor_on(trochia_motor *motor, uint8_t steps, int32_t due) {
+    trochia_segment_run *run = &motor->run;
+    if (run->flags & TROCHIA_SEGMENT_BACKWARDS)
+        motor->position -= steps;
+    else
+        motor->position += steps;
+    if (run->phase == 0) {
+        motor->on = 0;
+        return;
+    }
+    motor->due = due;
+    run->phase = (uint8_t)(run->phase - steps);
+    if (run->phase == 0)
+        TROCHIA_BEND(run);
+}
+
+/* Whether a motor alone is cheaper in runs than on the grid; closer than slots it must be. */
+static inline uint8_t trochia_motor_runs(const trochia_timeline *line, const trochia_motor *motor) {
+    enum { LONG_STRIDE = 8, SLOW = 2048L << 8, CLOSE = (TROCHIA_SLOT + 32L) << 8 };
+    const trochia_segment_run *run = &motor->run;
+    if (run->stride >= LONG_STRIDE || run->interval >= SLOW)
+        return 1;
+    return run->interval < CLOSE && trochia_real_fine(line, run->interval) < CLOSE;
+}
+
+/* One motor alone, up to a limit, as long as there is room. */
+static inline void trochia_timeline_alone(trochia_timeline *line, trochia_motor *motor, int32_t limit) {
+    while (motor->on && motor->due < limit && trochia_timeline_space(line) >= 12) {
+        trochia_segment_run *run = &motor->run;
+        uint32_t due = motor->due < 0 ? 0 : (uint32_t)motor->due, real = trochia_real_fine(line, due);
+        uint32_t interval = run->interval;
+        uint8_t count = run->phase < TROCHIA_LONGEST_RUN ? run->phase : TROCHIA_LONGEST_RUN;
+        if (interval >= (uint32_t)TROCHIA_LONG)
+            count = 1;
+        while (count > 1 && (int32_t)(due + (uint8_t)(count - 1) * interval) >= limit)
+            count = count >> 1;
+        if (!count)
+            count = 1; /* the last step of its segment */
+        uint16_t delta = trochia_timeline_delta(line, (uint16_t)(real >> 8), TROCHIA_APART);
+        uint8_t head = trochia_timeline_put(line, delta, motor->pin, count);
+        if (count > 1) {
+            interval = trochia_real_fine(line, interval);
+            TROCHIA_RING(line, head++) = (uint8_t)(interval >> 8);
+            TROCHIA_RING(line, head++) = (uint8_t)(interval >> 16);
+            TROCHIA_RING(line, head++) = (uint8_t)interval;
+            TROCHIA_RING(line, head++) = (uint8_t)real;
+            uint32_t ticks = (uint8_t)(count - 1) * interval + (uint8_t)real;
+            line->last = (uint16_t)(line->last + (uint16_t)(ticks >> 8));
+        }
+        trochia_motor_on(motor, count, motor->due + trochia_steps_ahead(run, count));
+        TROCHIA_PUBLISH(line, head);
+    }
+}
+
+/* Clears slots from a place of the ring on. */
+static inline void trochia_row_clear(trochia_timeline *line, uint8_t from, uint8_t slots) {
+    (void)line;
+    for (uint8_t i = 0; i < slots; i++)
+        TROCHIA_RING(line, from + i) = 0;
+}
+
+/* Takes slots without pulses together, the first and the last having some; returns how many bytes are left. */
+static inline uint8_t trochia_slots_pack(trochia_timeline *line, uint8_t to, uint8_t from, uint8_t slots) {
+    uint8_t bytes = 0, empty = 0;
+    (void)line;
+    for (uint8_t i = 0; i < slots; i++) {
+        uint8_t pins = TROCHIA_RING(line, from + i);
+        if (!pins) {
+            empty++;
+            continue;
+        }
+        if (empty)
+            TROCHIA_RING(line, to + bytes++) = (uint8_t)(empty << 1 | 1);
+        TROCHIA_RING(line, to + bytes++) = pins;
+        empty = 0;
+    }
+    return bytes;
+}
+
+/* Puts steps into slots, at most `most`, each into its own or the next that is free; returns how many found one.
+ * row->real is the next one's then. */
+static inline uint8_t trochia_row_place(trochia_timeline *line, trochia_row *row, uint8_t most) {
+    uint32_t real = row->real;
+    uint8_t made = 0;
+    (void)line;
+    do {
+        uint8_t slot = (uint8_t)(real >> 15);
+        if (slot < row->free)
+            slot = row->free;
+        if (slot >= row->stop)
+            break;
+        TROCHIA_RING(line, row->base + slot) |= row->pin;
+        row->free = (uint8_t)(slot + 1);
+        real += row->interval;
+        made++;
+    } while (made < most && (uint16_t)(real >> 8) < row->until);
+    row->real = real;
+    return made;
+}
+
+/* Where the next step of a motor is in real time, and how far apart its steps are; returns whether that is the same. */
+static inline uint8_t trochia_row_scale(const trochia_timeline *line, const trochia_motor *motor, trochia_row *row) {
+    uint32_t due = (uint32_t)motor->due;
+    row->real = due;
+    row->interval = motor->run.interval;
+    if (motor->due < 0)
+        row->real = 0;
+    else if (line->full)
+        return row->interval < (uint32_t)TROCHIA_LONG;
+    row->real = trochia_real_fine(line, row->real);
+    row->interval = trochia_real_fine(line, row->interval);
+    return 0;
+}
+
+/* One motor's steps of a chunk. */
+static inline void trochia_timeline_row(trochia_timeline *line, trochia_motor *motor, trochia_row *row) {
+    trochia_segment_run *run = &motor->run;
+    if ((line->full && TROCHIA_ROW(motor, row)) || (line->brisk && TROCHIA_ROW_BRISK(motor, row)))
+        return;
+    while (motor->on && motor->due < row->bound) {
+        uint8_t same = trochia_row_scale(line, motor, row);
+        if (!row->last && (uint16_t)(row->real >> 8) >= row->until)
+            return;
+        uint8_t most = run->phase;
+        if (most == 0 || run->interval >= (uint32_t)TROCHIA_LONG)
+            most = 1;
+        uint8_t made = TROCHIA_PLACE(line, row, most);
+        if (!made) {
+            line->crowded |= row->last;
+            return;
+        }
+        int32_t due = motor->due;
+        trochia_motor_on(motor, made, same ? (int32_t)row->real : due + trochia_steps_ahead(run, made));
+    }
+}
+
+/* The steps of all motors in the next slots, from the first that is due; returns whether those up to `limit` are all
+ * there.  Where there is no room, nothing is done. */
+static inline uint8_t trochia_timeline_chunk(trochia_timeline *line, int32_t first, uint16_t limit) {
+    enum { HALF = TROCHIA_SLOT / 2 };
+    if (trochia_timeline_space(line) < TROCHIA_CHUNK + TROCHIA_SPARE + 24)
+        return 0;
+    uint8_t start = (uint8_t)((uint16_t)(line->last + TROCHIA_SLOT - 1) / TROCHIA_SLOT);
+    uint16_t early = first < 0 ? 0u : (uint16_t)(first >> 8);
+    uint8_t slot = (uint8_t)(trochia_real(line, early) / TROCHIA_SLOT);
+    if (slot > start)
+        start = slot;
+    uint16_t end = trochia_real(line, limit);
+    uint8_t stop = (uint8_t)((uint16_t)(end + TROCHIA_SLOT - 1) / TROCHIA_SLOT), last = 1;
+    if (stop < start)
+        stop = start;
+    if ((uint8_t)(stop - start) > TROCHIA_CHUNK) {
+        stop = (uint8_t)(start + TROCHIA_CHUNK);
+        end = (uint16_t)(stop * TROCHIA_SLOT);
+        last = 0;
+    } else {
+        stop = (uint8_t)(stop + TROCHIA_SPARE);
+    }
+    uint8_t from = (uint8_t)(line->head + 4), used = start;
+    TROCHIA_CLEAR(line, from, (uint8_t)(stop - start));
+    trochia_row row = {.until = end, .base = (uint8_t)(from - start), .stop = stop, .last = last, .extra = line->extra};
+    row.bound = (int32_t)limit << 8;
+    for (uint8_t i = 0; i < TROCHIA_TIMELINE_MOTORS; i++) {
+        if (!line->motors[i].on)
+            continue;
+        row.free = start;
+        row.pin = line->motors[i].pin;
+        trochia_timeline_row(line, &line->motors[i], &row);
+        if (row.free > used)
+            used = row.free;
+    }
+    line->dense = !last && used != start;
+    if (used == start)
+        return last;
+    uint8_t slots = (uint8_t)(used - start), before = 0;
+    while (!TROCHIA_RING(line, from + before))
+        before++;
+    uint16_t at = (uint16_t)((start + before) * TROCHIA_SLOT + HALF);
+    uint16_t delta = trochia_timeline_delta(line, at, TROCHIA_APART);
+    slots = (uint8_t)(slots - before);
+    uint8_t bytes = TROCHIA_PACK(line, from, (uint8_t)(from + before), slots);
+    trochia_timeline_put(line, delta, TROCHIA_GRID | bytes, 0);
+    line->last = (uint16_t)(line->last + (uint16_t)((uint8_t)(slots - 1) * TROCHIA_SLOT));
+    TROCHIA_PUBLISH(line, (uint8_t)(from + ((bytes + 3) & ~3)));
+    return last && !line->crowded;
+}
+
+/* Steps due before `limit` [ticks]; returns whether all found room.  Takes turns with others: a chunk at a time. */
+static inline uint8_t trochia_timeline_steps(trochia_timeline *line, uint16_t limit) {
+    if (line->dense) /* several have steps, and more than the last chunk took */
+        return trochia_timeline_chunk(line, 0, limit);
+    int32_t bound = (int32_t)limit << 8, first = bound;
+    trochia_motor *near = line->motors;
+    uint8_t count = 0;
+    for (uint8_t i = 0; i < TROCHIA_TIMELINE_MOTORS; i++) {
+        trochia_motor *motor = &line->motors[i];
+        if (!motor->on || motor->due >= bound)
+            continue;
+        near = motor;
+        count++;
+        if (motor->due < first)
+            first = motor->due;
+    }
+    if (count == 0)
+        return 1;
+    if (count == 1 && trochia_motor_runs(line, near)) {
+        trochia_timeline_alone(line, near, bound);
+        return !(near->on && near->due < bound);
+    }
+    return trochia_timeline_chunk(line, first, limit);
+}
+
+#endif
