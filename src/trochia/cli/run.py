@@ -68,14 +68,15 @@ def command(
     from trochia.backends.switches import switches_of  # noqa: PLC0415
     from trochia.cli.run_figures import Figures  # noqa: PLC0415
     from trochia.cli.run_words import Words  # noqa: PLC0415
-    from trochia.cli.user_codes import attach, work_of  # noqa: PLC0415
+    from trochia.cli.user_codes import attach  # noqa: PLC0415
     from trochia.controller.runtime import Runtime  # noqa: PLC0415
     from trochia.program.logs import logs_of  # noqa: PLC0415
 
     logs_of(job.verdict.plan.program.actions, place_of(program))  # told before anything moves, if it cannot be
     twin = LiveTwin(job.machine, switches=switches_of(job.machine), ahead=SHALLOW if virtual else DEEP)
     clock = 0.0 if virtual else time.monotonic()
-    runtime = Runtime(twin, journal=journal, work=work_of(job.machine, machine_name).placed(**place), now=clock)
+    runtime = Runtime(twin, journal=journal, work=reading.work.placed(**place), reading=reading,
+                      now=clock)  # fmt: skip
     end_codes = attach(runtime, job.machine, machine_name, blocking=virtual)
     if take is not None:
         runtime.recorder.start(take, program=job.name)
@@ -91,6 +92,8 @@ def command(
     logs = words.write_logs(place_of(program))
     if take is not None:
         tell_recorded(take, runtime.recorder.failed, quiet=as_json)
+    if reading.on_end is not None:
+        reading.on_end(runtime.controller.work)  # what the run left, which only the machine knows
     status = session.status
     if as_json:
         options.print_json({"ok": not status.alarms, "state": status.state, "time_s": session.took,

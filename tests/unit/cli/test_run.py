@@ -41,3 +41,21 @@ def test_a_person_is_told_in_one_line(tmp_path: Path, option: tuple[str, ...], t
     assert done.returncode == 0, done.stderr
     assert told in done.stdout
     assert ("of a core" in done.stdout) == (option == ())
+
+
+def test_a_run_finds_what_the_check_found(tmp_path: Path) -> None:
+    """Tools, parameters and folders of subroutines are those the command line names."""
+    (tmp_path / "sub").mkdir()
+    (tmp_path / "sub" / "way.ngc").write_text("o<way> sub\nG0 X#1\nG10 L2 P2 Y#5401\no<way> endsub\nM2\n")
+    (tmp_path / "p.var").write_text("5221\t2.0\n5242\t0.0\n")
+    (tmp_path / "t.tbl").write_text("T4 P4 X1.5 Z10 D3\n")
+    (tmp_path / "call.ngc").write_text("G21 G90 T4 M6 G43\no<way> call [5]\nG10 L2 P3 X#5420\nM2\n")
+    code = "import sys; from trochia.cli import main; sys.argv[0] = 'trochia'; main()"
+    command = [sys.executable, "-c", code, "run", str(tmp_path / "call.ngc"), "-m", "reference-mill", "-y", "--virtual",
+               "--subroutines", str(tmp_path / "sub"), "--parameters", str(tmp_path / "p.var"), "--tools",
+               str(tmp_path / "t.tbl"), "--save-parameters"]  # fmt: skip
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    left = dict(line.split() for line in (tmp_path / "p.var").read_text().splitlines())
+    assert float(left["5242"]) == 1.5  # of the tool's table
+    assert float(left["5261"]) == pytest.approx(5.0)  # where the program stood
