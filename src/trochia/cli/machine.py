@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from trochia.cli import machine_channels, machine_new, machine_show
+from trochia.cli import machine_calibrate, machine_channels, machine_new, machine_show
 from trochia.cli.machine_file import apply_changes, force, output, problem_data, settings, write_machine
 from trochia.cli.options import as_json, print_json
 from trochia.errors import ConfigError
@@ -150,3 +150,4 @@ def _report(imported: Imported, title: str, file: Path) -> None:
 
 command.add_command(machine_new.command, "new")
 command.add_command(machine_channels.command, "channels")
+command.add_command(machine_calibrate.command, "calibrate")
