@@ -1,6 +1,7 @@
 # The table of contents for developers: every target does its own set-up on a bare Debian machine.
 #
 #   make run     set up, then prove a sample job on a sample machine: verdict, and where the report lies
+#   make serve   set up, then serve a sample machine (its twin) on this computer: http://127.0.0.1:8765
 #   make test    set up (Debian packages included) and run every test
 #   make check   format, lint, types, layers, C warnings, sanitisers, tests, docs: what CI runs
 #   make bench   measure, as ratios against a reference in the same call      make soak    long seeded campaigns
@@ -20,7 +21,7 @@ PLANS  ?= 100000
 SOAK_SEED ?= 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup setup-test run test check format lint types layers c-format c-warnings sanitise docs bench soak golden oracle clean
+.PHONY: help setup setup-test run serve test check format lint types layers c-format c-warnings sanitise docs bench soak golden oracle clean
 
 help:
 	@sed -n '1,/^$$/s/^# \{0,1\}//p' Makefile
@@ -51,6 +52,9 @@ images:
 
 run: setup
 	$(BIN)/trochia simulate programs/contour.ngc -m xy-table -o out/contour
+
+serve: setup
+	$(BIN)/trochia serve -m xy-table --journal out/journal --recordings out/recordings
 
 test: setup-test
 	$(BIN)/python -m pytest -q -n $(JOBS) --dist worksteal
