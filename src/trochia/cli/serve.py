@@ -93,12 +93,14 @@ def _runtime(machine: Machine, name: str, journal: Path | None, recordings: Path
 
     from trochia.backends.live_twin import DEEP, LiveTwin  # noqa: PLC0415 - only what moves needs a backend
     from trochia.backends.switches import switches_of  # noqa: PLC0415
-    from trochia.cli.user_codes import attach, work_of  # noqa: PLC0415
+    from trochia.cli.setup import of_machine  # noqa: PLC0415
+    from trochia.cli.user_codes import attach  # noqa: PLC0415
     from trochia.controller.offsets import NAME  # noqa: PLC0415
     from trochia.controller.runtime import Runtime  # noqa: PLC0415
 
     twin = LiveTwin(machine, switches=switches_of(machine), ahead=DEEP)
-    runtime = Runtime(twin, journal=journal, recordings=recordings, work=work_of(machine, name),
+    reading = of_machine(name)
+    runtime = Runtime(twin, journal=journal, recordings=recordings, work=reading.work, reading=reading,
                       keep=None if journal is None else journal / NAME, now=time.monotonic())  # fmt: skip
     attach(runtime, machine, name)
     return runtime

@@ -83,6 +83,15 @@ def _of_machine(given: SetupFiles, reading: Reading, name: str) -> tuple[SetupFi
     return given, replace(reading, work=replace(reading.work, user_codes=codes_of(machine, name)))
 
 
+def of_machine(name: str) -> Reading:
+    """Return how programs of a machine are read live: with the tools, variables and codes that its file names."""
+    from trochia.languages.gcode.reading import Reading  # noqa: PLC0415 - only where files are read
+    from trochia.languages.gcode.setup import SetupFiles, read_setup  # noqa: PLC0415
+
+    given, reading = _of_machine(SetupFiles(), Reading(), name)
+    return read_setup(given, reading)[1]
+
+
 def _run_and_save(command: Callable[..., Any], given: SetupFiles, reading: Reading, values: dict[str, Any]) -> None:
     """Run the command; where it says yes, write what the program has left."""
     from trochia.languages.gcode.setup import check_place, save  # noqa: PLC0415 - only where files are written

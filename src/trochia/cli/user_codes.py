@@ -1,14 +1,12 @@
 """M100 to M199 on the command line: which of them a machine has, and who runs them.
 
-In: a machine and the name it was loaded by.  Out: the work state its programs find, and a controller that runs them.
+In: a machine and the name it was loaded by.  Out: the codes its programs may call, and a controller that runs them.
 """
 
 from __future__ import annotations
 
 from pathlib import Path
 from typing import TYPE_CHECKING
-
-from trochia.program import WorkState
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -30,11 +28,6 @@ def codes_of(machine: Machine, name: str) -> bool | frozenset[int]:
     from trochia.controller.hooks import codes_in  # noqa: PLC0415 - only for machines that have them
 
     return codes_in(_folder(machine.user_m_codes, name))
-
-
-def work_of(machine: Machine, name: str) -> WorkState:
-    """Return the work state that a machine begins with."""
-    return WorkState(user_codes=codes_of(machine, name))
 
 
 def attach(runtime: Runtime, machine: Machine, name: str, *, blocking: bool = False) -> Callable[[], None]:

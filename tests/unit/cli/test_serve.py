@@ -13,7 +13,8 @@ import pytest
 
 from trochia.client import Client
 from trochia.controller.journal import entries
-from trochia.messages.command import Enable, JogBy
+from trochia.controller.offsets import kept_work
+from trochia.messages.command import Enable, JogBy, WorkZero
 
 TROCHIA = Path(sys.executable).with_name("trochia")
 
@@ -90,3 +91,24 @@ def test_users_are_added_listed_and_removed(tmp_path) -> None:
 
 def test_no_users_are_known_before_the_first(tmp_path) -> None:
     assert _run("users", "list", "--users", str(tmp_path / "none.json")).stdout == ""
+
+
+def test_offsets_are_there_again_after_a_kill(served, tmp_path) -> None:
+    process, address, password = served
+    with Client.connect(address, "operator", password) as client:
+        client.take()
+        client.command(Enable())
+        client.command(WorkZero(axes={"X": -12.5}))
+        process.kill()
+    process.wait()
+    kept = kept_work(tmp_path / "journal" / "parameters.var")
+    assert kept.systems[0][0] == 12.5
+    command = [TROCHIA, "serve", "-m", "reference-mill", "--port", "0", "--users", tmp_path / "users.json", "--journal",
+               tmp_path / "journal"]  # fmt: skip
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as again:
+        assert again.stdout is not None
+        found = re.search(r"http://127\.0\.0\.1:\d+", again.stdout.readline())
+        assert found is not None
+        with Client.connect(found[0], "operator", password) as client:
+            assert client.status.axes[0].work == -12.5
+        again.terminate()
