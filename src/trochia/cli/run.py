@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from trochia.cli import options
+from trochia.cli.mover import check, mover, mover_options
 from trochia.cli.record_options import recording_options, tell_recorded
 
 if TYPE_CHECKING:
@@ -26,9 +27,7 @@ LOOK = 0.1  #: between looks at the status [s]
 
 @click.command()
 @options.common
-@click.option("--backend", type=click.Choice(["twin", "grbl"]), default="twin", show_default=True, help="Who moves.")
-@click.option("--port", metavar="DEVICE", help="Serial port of a board (--backend grbl).")
-@click.option("--baud", type=click.IntRange(min=1200), default=115200, show_default=True, help="Its baud rate.")
+@mover_options
 @click.option("--virtual", is_flag=True, help="Run by a virtual clock, as fast as the computer can.")
 @click.option("-y", "--yes", is_flag=True, help="Home, start and go on at stops without asking.")
 @recording_options
@@ -36,7 +35,8 @@ LOOK = 0.1  #: between looks at the status [s]
               help="Folder of the machine's journal; without it nothing is kept.")  # fmt: skip
 def command(
     *, program: str, machine_name: str, place: dict[str, float], profile: str | None, as_json: bool, reading: Reading,
-    backend: str, port: str | None, baud: int, virtual: bool, yes: bool, journal: Path | None, take: Take | None,
+    backend: str, port: str | None, baud: int, board: str, virtual: bool, yes: bool, journal: Path | None,
+    take: Take | None,
 ) -> None:  # fmt: skip
     """Run a program: checked first, homed if need be, then under the controller, to its end.
 
@@ -44,12 +44,8 @@ def command(
 
     Example: trochia run programs/contour.ngc -m xy-table --virtual -y
     """
-    if (backend == "grbl") != (port is not None):
-        raise click.UsageError("--backend grbl and --port DEVICE go together")
-    if port is not None:
-        if virtual or journal is not None or take is not None:
-            raise click.UsageError("a board has its own clock and no journal: leave --virtual, --journal and --record "
-                                   "out")  # fmt: skip
+    check(backend, port, virtual=virtual, kept=journal is not None or take is not None)
+    if backend == "grbl" and port is not None:
         from trochia.cli import run_board  # noqa: PLC0415 - only where there is one
 
         run_board.run(program, machine_name, place, profile, reading=reading, port=port, baud=baud, yes=yes,
@@ -64,18 +60,16 @@ def command(
         else:
             show_verdict(job.verdict)
         sys.exit(1)
-    from trochia.backends.live_twin import DEEP, SHALLOW, LiveTwin  # noqa: PLC0415 - only what moves needs a backend
-    from trochia.backends.switches import switches_of  # noqa: PLC0415
-    from trochia.cli.run_figures import Figures  # noqa: PLC0415
+    from trochia.cli.run_figures import Figures  # noqa: PLC0415 - only what moves needs all this
     from trochia.cli.run_words import Words  # noqa: PLC0415
     from trochia.cli.user_codes import attach  # noqa: PLC0415
     from trochia.controller.runtime import Runtime  # noqa: PLC0415
     from trochia.program.logs import logs_of  # noqa: PLC0415
 
     logs_of(job.verdict.plan.program.actions, place_of(program))  # told before anything moves, if it cannot be
-    twin = LiveTwin(job.machine, switches=switches_of(job.machine), ahead=SHALLOW if virtual else DEEP)
+    moves = mover(job.machine, backend, port=port, baud=baud, board=board, virtual=virtual)
     clock = 0.0 if virtual else time.monotonic()
-    runtime = Runtime(twin, journal=journal, work=reading.work.placed(**place), reading=reading,
+    runtime = Runtime(moves, journal=journal, work=reading.work.placed(**place), reading=reading,
                       now=clock)  # fmt: skip
     end_codes = attach(runtime, job.machine, machine_name, blocking=virtual)
     if take is not None:

@@ -59,7 +59,7 @@ def names() -> dict[str, str | None]:
     }
 
 
-def opened(port: str, baud: int) -> serial.Serial:
+def opened(port: str, baud: int) -> serial.SerialBase:
     """Return a port that nobody else has open.
 
     Raises
@@ -68,9 +68,9 @@ def opened(port: str, baud: int) -> serial.Serial:
         When it cannot be had, with the reason.
     """
     try:
-        return serial.Serial(port, baud, timeout=0, write_timeout=0.5, exclusive=True)
+        return serial.serial_for_url(port, baud, timeout=0, write_timeout=0.5, exclusive=True)
     except (serial.SerialException, OSError, ValueError) as error:
-        raise LinkError(f"{port} {_reason(error)}") from None
+        raise LinkError(f"{port} {_reason(error)}", hint="`trochia boards` lists the ports.") from None
 
 
 def _reason(error: Exception) -> str:
@@ -99,10 +99,11 @@ def look(port: str, *, boots: float = BOOTS, clock: Callable[[], float] = time.m
         with opened(port, BAUDS[0]) as line:
             return _asked(line, port, boots, clock)
     except (LinkError, serial.SerialException, OSError) as error:
-        return Found(port=port, kind="closed", text=str(error).removeprefix(f"{port} "))
+        text = error.message if isinstance(error, LinkError) else str(error)
+        return Found(port=port, kind="closed", text=text.removeprefix(f"{port} "))
 
 
-def _asked(line: serial.Serial, port: str, boots: float, clock: Callable[[], float]) -> Found:
+def _asked(line: serial.SerialBase, port: str, boots: float, clock: Callable[[], float]) -> Found:
     """First listen, and ask as GRBL is asked; then say hello, at every baud rate."""
     heard = bytearray()
     end = clock() + boots
@@ -127,7 +128,7 @@ def _asked(line: serial.Serial, port: str, boots: float, clock: Callable[[], flo
     return Found(port=port, kind="other" if heard else "silent", text=described(bytes(heard)))
 
 
-def _listen(line: serial.Serial, seconds: float) -> bytes:
+def _listen(line: serial.SerialBase, seconds: float) -> bytes:
     """Return what comes within a time."""
     time.sleep(seconds)
     return bytes(line.read(4096))

@@ -147,7 +147,8 @@ class SpanMaker:
 
     def _uniform(self, queue: Queue, end: int) -> tuple[int, float, int]:
         """Return where the beam's power changes or the slew too much, the slew, and the level."""
-        row = max(int(queue.starts.searchsorted(self.time(self.at) + 1e-9, side="right")) - 1, 0)
+        now = self.time(self.at) + 0.5 / self.clock + 1e-9  # a row begins within half a tick of its tick
+        row = max(int(queue.starts.searchsorted(now, side="right")) - 1, 0)
         slew, power = float(queue.held.slew[row]), self._power(float(queue.held.power[row]))
         mean = done = 0.0
         for i in range(row, len(queue.held)):

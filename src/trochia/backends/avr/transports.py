@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import serial
 
+from trochia.backends.avr.ports import opened
 from trochia.backends.simulated_chip import SimulatedChip
 from trochia.errors import LinkError
 
@@ -106,13 +107,7 @@ class SerialTransport:
     def __init__(self, port: str, *, baud: int = 115_200) -> None:
         self.baud = baud
         self.name = port
-        try:
-            self._port = serial.serial_for_url(port, baud, timeout=0, write_timeout=0.5, exclusive=True)
-        except (serial.SerialException, OSError, ValueError) as error:
-            raise LinkError(
-                f"the port {port} cannot be opened: {error}",
-                hint="`trochia boards` lists the ports; another program may have it open.",
-            ) from None
+        self._port = opened(port, baud)
 
     def exchange(self, data: bytes, now: float) -> bytes:  # noqa: ARG002 - time passes by itself
         """See :class:`Transport`."""
