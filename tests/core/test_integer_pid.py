@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from trochia.errors import LimitError
@@ -46,8 +46,11 @@ def stated(p: int, i: int, d: int, errors: list[int], *, mended: bool) -> list[t
 
 
 GAIN = st.integers(0, 65535)
+SWINGS = [32767, 32767, -32768, -32768, -32768, 0, 32767, 1, -1, 0]  #: every term to both of its bounds, and back
 
 
+@example(p=40, i=65535, d=9, errors=SWINGS, mended=True)
+@example(p=40, i=65535, d=9, errors=SWINGS, mended=False)
 @given(p=GAIN, i=GAIN, d=GAIN, errors=st.lists(st.integers(-32768, 32767), max_size=40), mended=st.booleans())
 def test_the_chip_s_arithmetic_is_that_of_whole_numbers(
     p: int, i: int, d: int, errors: list[int], *, mended: bool
