@@ -14,6 +14,7 @@ import numpy as np
 from trochia.analysis.counting import missed_problems
 from trochia.analysis.following import ServoUse, servo_problems, servo_use
 from trochia.analysis.habits import locked_moves, warnings
+from trochia.analysis.loops import unstable_problems
 from trochia.analysis.margins import margins
 from trochia.analysis.problems import Problem, Severity, from_error, more_lines
 from trochia.analysis.shaped import warning as shaping_warning
@@ -82,6 +83,7 @@ def judge(plan: Plan) -> Verdict:
     problems = [
         *lost_step_problems(plan, uses),
         *heat_problems(plan),
+        *unstable_problems(plan),
         *servo_problems(plan, servos),
         *missed_problems(plan, servos),
         *warnings(plan.program, plan.machine),

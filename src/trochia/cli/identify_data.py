@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from trochia.analysis.identification import Estimate
     from trochia.analysis.identification.response import FrequencyResponse
 
+_LINES = 400  # of a fit
 RESPONSES = ("frequency-response", "two-mass")
 MODELS = ("first-order", "fopdt", "second-order", "inverse-dynamics", *RESPONSES)
 
@@ -85,7 +86,18 @@ def _response(path: Path, model: str, viscous: float) -> FromData:
         ],
         "coherence_median": float(sorted(found.coherence)[len(found.coherence) // 2]), "lines_trusted": len(told.value),
     }  # fmt: skip
-    return FromData(two_mass(found, viscous=viscous) if model == "two-mass" else None, figures, found)
+    return FromData(two_mass(_thinned(found), viscous=viscous) if model == "two-mass" else None, figures, found)
+
+
+def _thinned(found: FrequencyResponse) -> FrequencyResponse:
+    """Return lines that are even by ratio: windows of one length give most of theirs to the highest decade."""
+    from dataclasses import replace  # noqa: PLC0415 - as above
+
+    import numpy as np  # noqa: PLC0415
+
+    spaced = np.geomspace(1.0, len(found.frequency), _LINES)
+    kept = np.unique(np.rint(spaced).astype(np.int64)) - 1
+    return replace(found, frequency=found.frequency[kept], value=found.value[kept], coherence=found.coherence[kept])
 
 
 def _degrees(value: complex) -> float:

@@ -6,7 +6,7 @@ Powell and Workman, *Digital Control*), with no friction that is dry, no gap and
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -140,35 +140,57 @@ def open_loop(plant: ServoPlant, loop: Loop, frequency: Array) -> Response:
 
 def closed_poles(plant: ServoPlant, loop: Loop) -> Response:
     """Return the poles of the closed loop in z: stable when all lie inside the unit circle."""
-    import control  # noqa: PLC0415 - slow to import
-
-    ss: Any = control.ss  # its types say that anything may come back
-
     t, one = loop.period, np.array([1.0])
 
-    def section(numerator: Array, denominator: Array) -> Any:  # noqa: ANN401 - as above
-        """Return a section in 1/z."""
-        n = max(len(numerator), len(denominator))
-        pair = [np.pad(p, (0, n - len(p))) for p in (numerator, denominator)]
-        return ss(control.tf(pair[0], pair[1], t))
-
-    def pid(given: Pid) -> Any:  # noqa: ANN401 - as above
+    def pid(given: Pid) -> Section:
         m = given.members(t)
         total = section(np.array([m["p"]]), one)
         if given.ki:
-            total = total + section(np.array([m["i_now"], m["i_before"]]), np.array([1.0, -1.0]))
+            total = beside(total, section(np.array([m["i_now"], m["i_before"]]), np.array([1.0, -1.0])))
         if given.kd:
-            total = total + section(m["d_gain"] * np.array([1.0, -1.0]), np.array([1.0, -m["d_keep"]]))
+            total = beside(total, section(m["d_gain"] * np.array([1.0, -1.0]), np.array([1.0, -m["d_keep"]])))
         return total
 
     total = section(np.zeros(1), one) if loop.position is None else pid(loop.position)
     if loop.speed is not None:
         difference = np.zeros(loop.averaged + 1)
         difference[0], difference[-1] = 1.0, -1.0
-        total = pid(loop.speed) * (total + section(difference / (t * loop.averaged), one))
+        total = behind(pid(loop.speed), beside(total, section(difference / (t * loop.averaged), one)))
     for f in loop.filters:
-        total = section(np.array([f.b0, f.b1, f.b2]), np.array([1.0, f.a1, f.a2])) * total
-    sampled = held(state_space(plant), t)
-    body = ss(sampled.a, sampled.b, sampled.c, [[0.0]], t)
-    closed: Any = control.feedback(body * total, 1)
-    return np.asarray(closed.poles(), np.complex128)
+        total = behind(section(np.array([f.b0, f.b1, f.b2]), np.array([1.0, f.a1, f.a2])), total)
+    body = held(state_space(plant), t)
+    whole = behind(Section(body.a, body.b, body.c, 0.0), total)
+    return np.asarray(np.linalg.eigvals(whole.a - whole.b @ whole.c), np.complex128)
+
+
+class Section(NamedTuple):
+    """x of the next tick = a x + b u, y = c x + d u, of one input and one output."""
+
+    a: Array
+    b: Array
+    c: Array
+    d: float
+
+
+def section(numerator: Array, denominator: Array) -> Section:
+    """Return numerator / denominator, polynomials in 1/z of which the denominator begins with 1."""
+    n = max(len(numerator), len(denominator))
+    over, under = (np.pad(np.asarray(p, np.float64), (0, n - len(p))) for p in (numerator, denominator))
+    a = np.eye(n - 1, k=-1)
+    a[:1] = -under[1:]
+    return Section(a, np.eye(n - 1, 1), (over[1:] - over[0] * under[1:])[None, :], float(over[0]))
+
+
+def beside(one: Section, two: Section) -> Section:
+    """Return the sum of two sections."""
+    a = np.zeros((len(one.a) + len(two.a),) * 2)
+    a[: len(one.a), : len(one.a)], a[len(one.a) :, len(one.a) :] = one.a, two.a
+    return Section(a, np.vstack([one.b, two.b]), np.hstack([one.c, two.c]), one.d + two.d)
+
+
+def behind(last: Section, first: Section) -> Section:
+    """Return the section that takes what another gives."""
+    n = len(first.a)
+    a = np.zeros((n + len(last.a),) * 2)
+    a[:n, :n], a[n:, n:], a[n:, :n] = first.a, last.a, last.b @ first.c
+    return Section(a, np.vstack([first.b, last.b * first.d]), np.hstack([last.d * first.c, last.c]), last.d * first.d)

@@ -136,7 +136,7 @@ def test_options_that_do_not_go_together_are_named(words: tuple[str, ...], what:
 def shaken(path: Path) -> None:
     """Write the motion of two masses under a chirp: time, torque, position."""
     plant = plant_of([1e-4, 2e-4, 12.0, 2e-3, 0.5], 1e-3, 3e-4)
-    torque = np.tile(chirp(4096, 1e-3, (2.0, 200.0)), 8)
+    torque = np.tile(chirp(1024, 1e-3, (2.0, 200.0)), 8)
     rows = ServoKernel(plant_members(plant, 1e-5)).drive(torque, steps=100).measured
     rows = rows + np.random.default_rng(1).normal(0.0, 2e-5, len(rows))
     np.savetxt(path, np.stack([1e-3 * np.arange(len(torque)), torque, rows], axis=1), delimiter=",",
@@ -157,7 +157,6 @@ def test_a_chirp_in_a_csv_gives_response_coherence_and_two_masses(tmp_path: Path
     assert found["uncertainty"]["viscous"] is None  # taken as known
     assert found["files"] == [str(page)]
     assert "<svg" in page.read_text()
-    assert "wrote" in run(identify.command, *words)
 
 
 ROW = """voltage = "48 V"
