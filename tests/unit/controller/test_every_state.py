@@ -19,6 +19,7 @@ from trochia.controller.states import MOVING, TABLE, State, legal
 from trochia.errors import LinkError
 from trochia.machine.homing import Homing
 from trochia.machine.io import Beam, Channel
+from trochia.machine.panel import Panel
 from trochia.machine.probe import Part, Probe
 from trochia.messages import command as c
 
@@ -35,13 +36,14 @@ TEXTS = (
     "G21 T2 M6\nG1 X2 F600\nM2\n",
     "M2\n",
     "M0\nM0\nM2\n",
-    "G21 G90 M3 S60 G38.3 X40 F900\nG1 Y[#5070 * 3] F600\nM66 P1 L1 Q0.3\nG1 X[#5061 - 1 + #5399]\nM2\n",
-    "G21 G91 G38.2 X9 F2000\nG38.5 X-9 F300\nM66 P0 L0\nG1 Y1 F900\nM2\n",
+    "G21 G90 M3 S60 G38.3 X40 F900\nG1 Y[#5070 * 3] F600\nM66 P7 L1 Q0.3\nG1 X[#5061 - 1 + #5399]\nM2\n",
+    "G21 G91 G38.2 X9 F2000\nG38.5 X-9 F300\nM66 P7 L0\nG1 Y1 F900\nM2\n",
     "",
     "G1 X1\n",  # no feed: refused
     "G21 G0 X9999\nM2\n",  # out of travel: refused
 )
 PROGRAMS = st.sampled_from(TEXTS)
+GUARDS = ("limit-x-minus", "limit-x-plus", "limit-y-minus", "limit-y-plus")  # door, interlock, button, key
 AXES = st.sampled_from(["X", "Y", "A"])
 FRACTIONS = st.sampled_from([0.0, 0.3, 1.0, 1.7])
 COMMANDS = st.one_of(
@@ -90,7 +92,7 @@ COMMANDS = st.one_of(
     ),
     st.builds(c.WorkZero, axes=st.dictionaries(AXES, st.just(1.0), max_size=1)),
     st.builds(c.SetOutput, name=st.sampled_from(["lamp", "horn"]), value=st.just(1.0)),
-    st.builds(c.SetInput, name=st.sampled_from(["limit-x-minus", "limit-x-plus"]), value=st.sampled_from([0.0, 1.0])),
+    st.builds(c.SetInput, name=st.sampled_from([*GUARDS, "feed"]), value=st.sampled_from([0.0, 1.0])),
     st.builds(c.Answer, request=st.integers(0, 3), yes=st.booleans()),
 )
 
@@ -118,7 +120,13 @@ def machine_of() -> Machine:
         axes=axes,
         joints=joints,
         beam=Beam(kind="power", full_power=100.0),
-        io=(*made.io, Channel(name="lamp", kind="latched"), Channel(name="probe", kind="input")),
+        io=(
+            *made.io,
+            Channel(name="lamp", kind="latched"),
+            Channel(name="probe", kind="input"),
+            Channel(name="feed", kind="input"),
+        ),
+        panel=Panel(door=GUARDS[0], interlock=GUARDS[1], estop=GUARDS[2], arm=GUARDS[3], idle_release=3.0),
         probe=Probe(input="probe", part=Part(left=9.0, right=30.0)),
     )
 
@@ -175,6 +183,9 @@ class EveryState(RuleBasedStateMachine):
         self.twin.faulty.clear()
         self.twin.plant.jammed.clear()
         self.twin.broken = False
+        for number, name in enumerate(GUARDS):
+            self.command(c.SetInput(name=name, value=float(number == len(GUARDS) - 1)))
+        self.tick()
         for command in (c.Abort(), c.Reset(), c.Acknowledge(), c.Enable(), c.Override(feed=1.0, rapid=1.0)):
             self.command(command)
             for _ in range(6000):
@@ -193,6 +204,8 @@ class EveryState(RuleBasedStateMachine):
     @rule(text=PROGRAMS)
     @precondition(lambda self: self.it.state is State.IDLE)
     def begin(self, text: str) -> None:
+        for number, name in enumerate(GUARDS):
+            self.command(c.SetInput(name=name, value=float(number == len(GUARDS) - 1)))
         self.command(c.ArmBeam(on=True))
         self.command(c.Load(name="p", text=text))
         self.command(c.Run())
