@@ -28,9 +28,18 @@ SAMPLES = sorted((HERE.parents[1] / "programs").glob("*.ngc"))
 
 # Programs the reference takes although they are at fault, or the other way round, each with its reason.
 DIFFERENCES = {
+    "error-arc-radius-beyond-numbers": "the reference prints a centre of two hundred digits",
+    "error-arc-too-many-turns": "the reference has no bound",
+    "error-cycle-too-many-pecks": "the reference has no bound",
+    "error-cycle-too-many-repeats": "the reference has no bound",
+    "error-expression-too-deep": "the reference takes as many brackets as a line has room for, 127",
+    "error-g10-no-table": "without a tool table the reference writes to the sample one it has",
+    "error-lathe-tool-arc-entry": "the reference cuts straight to the arc's end, then a whole turn",
+    "error-lathe-tool-orientation": "the reference takes an orientation 10, which is none",
     "error-log-elsewhere": "the reference opens a log anywhere",
     "error-turning-narrow": "the reference dies of a D that a groove has no room for",
     "error-turning-too-many-passes": "the reference has no bound",
+    "error-thread-cycle-too-many-passes": "the reference has no bound, and is not ready in a minute",
     "error-turning-with-stop": "the reference forgets the stop",
     "error-turning-y": "the reference does not look at Y",
     "error-profile-other-code": "the reference takes the axis words of any code for a line",

@@ -198,7 +198,8 @@ class Flow:
         call = self.calls[-1]
         if (call.word == "m98") != (control.word == "m99"):
             right = "M99" if call.word == "m98" else "ENDSUB or RETURN"
-            raise control.fault(ModalConflictError, f"what {call.word.upper()} called ends with {right}")
+            raise control.fault(ModalConflictError, f"what {call.word.upper()} called ends with {right}",
+                                hint="CALL and ENDSUB go together, and M98 and M99.")  # fmt: skip
         self.value, self.returned = (values[0], 1.0) if values else (0.0, 0.0)
         self.skipping = None
         if call.left > 1:

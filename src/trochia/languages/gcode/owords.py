@@ -166,7 +166,8 @@ def _label(text: str, at: int, place: Place, parameters: Parameters) -> tuple[st
 def _whole(value: float, place: Place, at: int) -> str:
     number = as_integer(value)
     if number is None:
-        raise place.fault(ParseError, f"O{value:g}: the number of an O-word must be whole", at)
+        raise place.fault(ParseError, f"O{value:g}: the number of an O-word must be whole", at,
+                          hint="Write it like O100.")  # fmt: skip
     return str(number)
 
 

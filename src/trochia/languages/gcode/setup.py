@@ -131,7 +131,8 @@ def _write(path: Path, text: str) -> None:
     try:
         write_whole(path, text.encode("latin-1", errors="replace"))
     except OSError as error:
-        raise ConfigError(f"{path}: cannot be written: {error.strerror or error}") from None
+        raise ConfigError(f"{path}: cannot be written: {error.strerror or error}",
+                          hint="Is there room, and may you write there?") from None  # fmt: skip
 
 
 def _ini_values(path: Path) -> dict[tuple[str, str], str]:
@@ -156,7 +157,8 @@ def _text(path: Path, what: str) -> str:
     try:
         data = path.read_bytes()
     except OSError as error:
-        raise ConfigError(f"{path}: cannot read {what}: {error.strerror or error}") from None
+        raise ConfigError(f"{path}: cannot read {what}: {error.strerror or error}",
+                          hint="Is its name right, and may you read it?") from None  # fmt: skip
     if b"\0" in data:
-        raise ConfigError(f"{path}: expected {what} as text, found binary data")
+        raise ConfigError(f"{path}: expected {what} as text, found binary data", hint="Is it the right file?")
     return data.decode("latin-1")

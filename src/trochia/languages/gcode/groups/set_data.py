@@ -57,7 +57,8 @@ def check_data(block: Block, state: State) -> None:
         raise block.fault(ParseError, "G10 needs L0, L1, L2, L10, L11 or L20", "l" if "l" in block.values else "G10",
                           hint=_WHAT)  # fmt: skip
     if kind and "p" in block.values and number - whole > _NEAR:
-        raise block.fault(ParseError, "P of G10 must be a whole number", "p")
+        raise block.fault(ParseError, "P of G10 must be a whole number", "p",
+                          hint="It numbers a coordinate system or a tool.")  # fmt: skip
     if kind in (2, 20) and not 0 <= whole <= len(SYSTEMS):
         raise block.fault(ParseError, "G10 L2 and L20 need P from 0 to 9", "p" if "p" in block.values else "G10",
                           hint="P1 is G54, P2 G55 … P9 G59.3; P0 the one in force.")  # fmt: skip
