@@ -19,46 +19,43 @@ from __future__ import annotations
 import argparse
 import os
 import signal
-import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
 from random import Random
 
 from trochia.backends.live_twin import LiveTwin
 from trochia.controller.interrupted import interrupted
+from trochia.controller.runtime import PERIOD as TURN
 from trochia.controller.runtime import Runtime
 from trochia.machine.load import load
+from trochia.messages import command as c
 
 PROGRAM = Path(__file__).parents[2] / "programs" / "contour.ngc"
 MACHINE = "laser"
-PERIOD = 0.020 + 0.005 + 1e-6  #: one status period, and the turn that is under way [s]
+PERIOD = 0.020 + TURN + 1e-6  #: one status period, and the turn that is under way [s]
 SECONDS = 27.0  #: of the program
-RUN = """
-import sys, time
-from trochia.backends.live_twin import LiveTwin
-from trochia.controller.runtime import PERIOD, Runtime
-from trochia.machine.load import load
-from trochia.messages import command as c
-from pathlib import Path
-folder, program, machine, speed = sys.argv[1:5]
-runtime = Runtime(LiveTwin(load(machine)), journal=Path(folder))
-now = 0.0
-for command in (c.Enable(), c.ArmBeam(on=True), c.Load(name="job", text=Path(program).read_text()), c.Run()):
-    ack = runtime.command(command, now)
-    assert ack.ok, ack.reason
-    now += PERIOD
-    runtime.turn(now)
-begin, first = time.monotonic(), now
-while runtime.controller.state.value == "running":
-    now += PERIOD
-    runtime.turn(now)
-    report = runtime.controller.report
-    place = runtime.controller.position()
-    sys.stdout.write(f"{now:.6f} {report.executed:.9f} {report.line} {place['X']:.9f} {place['Y']:.9f}\\n")
-    sys.stdout.flush()
-    time.sleep(max(0.0, (now - first) / float(speed) - (time.monotonic() - begin)))
-"""
+
+
+def run(folder: Path, speed: float, told: int) -> None:
+    """Run the job with a journal, and tell each turn's truth."""
+    runtime = Runtime(LiveTwin(load(MACHINE)), journal=folder)
+    now = 0.0
+    for command in (c.Enable(), c.ArmBeam(on=True), c.Load(name="job", text=PROGRAM.read_text()), c.Run()):
+        ack = runtime.command(command, now)
+        assert ack.ok, ack.reason
+        now += TURN
+        runtime.turn(now)
+    begin, first = time.monotonic(), now
+    while runtime.controller.state.value == "running":
+        now += TURN
+        runtime.turn(now)
+        report = runtime.controller.report
+        place = runtime.controller.position()
+        line = f"{now:.6f} {report.executed:.9f} {report.line} {place['X']:.9f} {place['Y']:.9f}\n"
+        os.write(told, line.encode())
+        time.sleep(max(0.0, (now - first) / speed - (time.monotonic() - begin)))
 
 
 def case(seed: int, speed: float) -> str:
@@ -89,17 +86,26 @@ def case(seed: int, speed: float) -> str:
 
 def killed(folder: Path, instant: float, speed: float) -> list[tuple[float, float, int, float, float]]:
     """Run a job, kill it at an instant of its clock, and return what it told: time, stream time, line, X, Y."""
-    command = [sys.executable, "-c", RUN, str(folder), str(PROGRAM), MACHINE, str(speed)]
-    told: list[tuple[float, float, int, float, float]] = []
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
-        assert process.stdout is not None
-        for line in process.stdout:
-            told.append(_row(line))
-            if told[-1][0] >= instant:
-                os.kill(process.pid, signal.SIGKILL)
+    out, told = os.pipe()
+    process = os.fork()  # what is imported need not be again
+    if process == 0:
+        code = 1
+        try:
+            run(folder, speed, told)
+            code = 0
+        finally:
+            os._exit(code)
+    os.close(told)
+    rows: list[tuple[float, float, int, float, float]] = []
+    with os.fdopen(out) as lines:
+        for line in lines:
+            rows.append(_row(line))
+            if rows[-1][0] >= instant:
+                os.kill(process, signal.SIGKILL)
                 break
-        told += [_row(line) for line in process.stdout if line.count(" ") == 4 and line.endswith("\n")]
-    return told
+        rows += [_row(line) for line in lines if line.count(" ") == 4 and line.endswith("\n")]
+    os.waitpid(process, 0)
+    return rows
 
 
 def _row(line: str) -> tuple[float, float, int, float, float]:
