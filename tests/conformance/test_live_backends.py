@@ -14,9 +14,12 @@ from trochia.backends import LIVE_BACKENDS
 from trochia.backends.avr.live_avr import LiveAvr
 from trochia.backends.avr.transports import ChipTransport
 from trochia.backends.avr.wiring import BOARDS
+from trochia.backends.compensated import compensated
 from trochia.backends.live import Orders, Watch
 from trochia.backends.segments import Segments, sampled
 from trochia.errors import LocalProtocolError
+from trochia.machine.compensation import Compensation, Squareness
+from trochia.machine.error_table import ErrorTable
 from trochia.machine.io import Channel
 from trochia.machine.transmissions import Leadscrew
 
@@ -30,7 +33,7 @@ if TYPE_CHECKING:
 STEP = 0.01  #: between polls [s]
 
 
-@pytest.fixture(params=[*sorted(LIVE_BACKENDS), *BOARDS])
+@pytest.fixture(params=[*sorted(LIVE_BACKENDS), *BOARDS, "corrected twin", "corrected uno-stepdir"])
 def kind(request: pytest.FixtureRequest) -> str:
     return request.param
 
@@ -40,7 +43,21 @@ def machine(kind: str) -> Machine:
     made = trochia.load("reference-mill")
     if kind in BOARDS and BOARDS[kind].coils:  # full steps of two motors
         made = shield_stage()
-    return replace(made, io=(Channel(name="touch", kind="input"), Channel(name="lamp", kind="latched")))
+    made = replace(made, io=(Channel(name="touch", kind="input"), Channel(name="lamp", kind="latched")))
+    return erring(made) if kind.startswith("corrected") else made
+
+
+def erring(machine: Machine) -> Machine:
+    """Return a machine whose twin errs, and that corrects it."""
+    points: list[tuple[float, float]] = []
+    for axis in machine.axes[:1]:
+        places = np.linspace(axis.minimum, axis.maximum, 21)
+        points = list(zip(places.tolist(), (0.03 * np.sin(places / 30.0)).tolist(), strict=True))
+    table = ErrorTable(points=tuple(points))
+    first = replace(machine.joints[0], screw_error=table, backlash=0.01,
+                    compensation=Compensation(screw=table, backlash=0.01))  # fmt: skip
+    return replace(machine, joints=(first, *machine.joints[1:]), squareness=Squareness(XY=0.05),
+                   squareness_error=Squareness(XY=0.05))  # fmt: skip
 
 
 def shield_stage() -> Machine:
@@ -53,12 +70,18 @@ def shield_stage() -> Machine:
 
 @pytest.fixture
 def backend(kind: str, request: pytest.FixtureRequest, machine: Machine) -> Iterator[SegmentBackend]:
+    kind, corrected = kind.removeprefix("corrected "), kind.startswith("corrected")
     if kind in BOARDS:  # the real image, on the simulated chip
         program, image = request.getfixturevalue("chip_program"), request.getfixturevalue("board_image")
         board = BOARDS[kind]
         made = LiveAvr(machine, ChipTransport(program, image(f"{board.name}-1000000"), mcu=board.mcu), board=board.name)
     else:
         made = LIVE_BACKENDS[kind](machine)
+    if corrected:
+        inner, made = made, compensated(made)
+        for name in ("inputs", "lag"):
+            if hasattr(inner, name):
+                setattr(made, name, getattr(inner, name))
     made.open(0.0)
     yield made
     made.close()

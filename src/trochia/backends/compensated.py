@@ -18,6 +18,7 @@ import numpy as np
 from trochia.backends.live import Orders, Tapped
 from trochia.backends.queue import Queue
 from trochia.backends.segments import Segments, joined
+from trochia.errors import LocalProtocolError
 from trochia.machine.crossing import crossing_of
 from trochia.machine.reserve import limits_of
 
@@ -178,6 +179,8 @@ class Compensated:
 
     def _placed(self, orders: Orders) -> dict[str, float]:
         """Return what motors' places are called when joints' are."""
+        if self._asked.end > self._executed + SAME or self._inner < self._tail - SAME:
+            raise LocalProtocolError("positions are named at rest only")
         names = [joint.name for joint in self.machine.joints]
         here = self._here()
         for name, value in orders.place.items():
