@@ -2,17 +2,17 @@
 
 In: the registry and ``tests/golden``.  Out: Markdown, made anew at every build of the documentation, never committed.
 Every code shows the shortest golden program that uses it and what that prints, which the tests hold to be so; every
-rejected golden program is an entry of the page of errors.
+rejected golden program is an entry of the page of errors.  Letters, O-words, functions and comments: language_words.py.
 """
 
 from __future__ import annotations
 
 import re
+import runpy
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from trochia.languages.gcode.polar import POLAR
-from trochia.languages.gcode.registry import G_CODES, M_CODES, ORDER, WORDS
+from trochia.languages.gcode.registry import G_CODES, M_CODES, ORDER
 
 if TYPE_CHECKING:
     from trochia.languages.gcode.codes import Code
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 ROOT = Path(__file__).resolve().parents[1]
 GOLDEN = ROOT / "tests" / "golden"
 PAGES = ROOT / "docs" / "reference" / "gcode"
+WORDS_PAGES = runpy.run_path(str(ROOT / "docs" / "language_words.py"))
 _COMMENT = re.compile(r"\([^()]*\)|;.*")
 
 
@@ -56,21 +57,6 @@ def group_page(group: str, codes: list[Code], known: dict[str, str]) -> str:
     return "\n".join([*head, *(line for code in codes for line in section(code, known))])
 
 
-def words_page() -> str:
-    """Return the page of the words that act by themselves, and of those that stand for X and Y."""
-    lines = ["# Words that act by themselves or stand for others", ""]
-    for word in WORDS.values():
-        lines += [
-            f"## {word.letter.upper()}",
-            "",
-            f"{word.about[:1].upper()}{word.about[1:]}; acts at: {word.step}.",
-            "",
-        ]
-    for letter, about in POLAR.items():
-        lines += [f"## {letter}", "", f"{about[:1].upper()}{about[1:]}; acts at: motion.", ""]
-    return "\n".join(lines)
-
-
 def errors_page() -> str:
     """Return the page of errors, by their code names, each with the program that earns it."""
     by_kind: dict[str, list[str]] = {}
@@ -91,7 +77,7 @@ def pages() -> dict[str, str]:
         if code.name not in {other.name for other in groups.get(code.group, [])}:
             groups.setdefault(code.group, []).append(code)
     made = {f"{group.replace(' ', '-')}.md": group_page(group, codes, known) for group, codes in groups.items()}
-    return {**made, "words.md": words_page(), "errors.md": errors_page()}
+    return {**made, **WORDS_PAGES["pages"](), "errors.md": errors_page()}
 
 
 def write() -> None:

@@ -30,6 +30,23 @@ def test_every_code_and_error_kind_has_a_section():
     assert "\n## None" not in text
 
 
+WORDS_PAGES = PAGES["WORDS_PAGES"]["pages"]()
+ENTRIES = [(entry.partition("\n")[0], entry) for text in WORDS_PAGES.values()
+           for entry in text.split("\n## ")[1:]]  # fmt: skip
+BARE = {"V"}  # the printer, whose programs these are, has six axes
+
+
+def test_every_letter_word_function_and_comment_has_an_entry():
+    assert {page: text.count("\n## ") for page, text in WORDS_PAGES.items()} == {
+        "letters.md": 29, "o-words.md": 15, "functions.md": 29, "comments.md": 9,
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize(("word", "entry"), ENTRIES, ids=[word for word, _ in ENTRIES])
+def test_every_word_has_an_example_that_the_golden_cases_run(word, entry):
+    assert word in BARE or "\nprints\n" in entry or "\nis refused\n" in entry
+
+
 REJECTED = sorted(path.parent for path in (Path(__file__).parents[1] / "golden").glob("*/expected.error"))
 
 

@@ -18,7 +18,14 @@ if TYPE_CHECKING:
     from trochia.languages.gcode.sink import Sink
     from trochia.languages.gcode.state import State
 
-_KIND = re.compile(r"(msg|debug|print|log|logopen|logappend|abort|py),|(logclose)$", re.IGNORECASE)
+KINDS = {
+    "msg": "tells the operator a text as it is", "debug": "tells a text with values, unless #5599 is 0",
+    "print": "tells a text with values", "log": "writes a text with values into the log that is open",
+    "logopen": "begins a log file", "logappend": "goes on with a log file", "logclose": "closes the log",
+    "abort": "ends the program with an error", "py": "is refused: a part program runs no other language",
+}  #: word -> what a comment that begins with it does  # fmt: skip
+_BARE = "logclose"  # the one that has no text
+_KIND = re.compile(rf"({'|'.join(kind for kind in KINDS if kind != _BARE)}),|({_BARE})$", re.IGNORECASE)
 _PART = re.compile(r"%(d|f|\.[0-9]f)|(%\.)|#<([^>]*)(>?)|#([0-9]+)")
 _UNKNOWN = "######"
 _DECIMALS, _FEWER = 6, 4
