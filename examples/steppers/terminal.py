@@ -1,7 +1,8 @@
 """A terminal for the sketches, in place of the board's serial monitor and reset button.
 
 ``--pace`` seconds of the motor a second (0: as fast as the computer can), ``--seconds`` until the power goes,
-``--exact`` delays in place of the shield library's whole milliseconds.  ``q`` or the end of the input switches off.
+``--exact`` delays in place of the shield library's whole milliseconds, ``--board`` port of a real shield, whose board
+has the image uno-l293d.  ``q`` or the end of the input switches off.
 """
 
 from __future__ import annotations
@@ -15,8 +16,10 @@ import tty
 from collections import deque
 from typing import TYPE_CHECKING
 
+from trochia.backends.avr.transports import SerialTransport
 from trochia.errors import TrochiaError
 from trochia.stepper import PacedTime, Shield
+from trochia.stepper.board import BoardShield
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -35,9 +38,10 @@ class Terminal(PacedTime):
         parser.add_argument("--seconds", type=float, default=float("inf"), help="until the power goes")
         parser.add_argument("--exact", action="store_true", help="exact delays, not whole milliseconds")
         parser.add_argument("--rpm", type=int, default=50, help="first speed of a search")
+        parser.add_argument("--board", metavar="PORT", help="make the steps on a board, too")
         self.options = parser.parse_args()
         super().__init__(self.options.pace)
-        self.shield = Shield(self)
+        self.shield = BoardShield(self, SerialTransport(self.options.board)) if self.options.board else Shield(self)
         self._keys: deque[int] = deque()
 
     def wait_until(self, moment: float) -> None:
@@ -86,5 +90,7 @@ def run(sketch: Callable[[Terminal], None], purpose: str | None) -> None:
         terminal.say(error)
         sys.exit(1)
     finally:
+        if isinstance(terminal.shield, BoardShield):
+            terminal.shield.close()
         if before is not None:
             termios.tcsetattr(sys.stdin, termios.TCSADRAIN, before)

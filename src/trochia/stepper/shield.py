@@ -69,6 +69,12 @@ class Shield:
         """Return the motor on port 1 or 2; errors as of :class:`ShieldMotor`."""
         return ShieldMotor(self, port, steps_per_turn, output, whole_milliseconds=whole_milliseconds)
 
+    def stepped(self, port: int, moment: float, direction: int, style: Style) -> None:
+        """Take notice of a motor's step; a shield on a board has it made."""
+
+    def released(self, port: int, moment: float) -> None:
+        """Take notice of a motor's release."""
+
     def latch(self, moment: float, byte: int) -> None:
         """Load the register at a moment [s]."""
         self.image = byte
@@ -143,12 +149,14 @@ class ShieldMotor:
         self.position = style.after(self.position, direction) % _TURN
         row = _MICRO[self.position] if style is MICROSTEP else _HALF[self.position // _SECTOR]
         self._drive(at, (float(row[0]), float(row[1])))
+        self.shield.stepped(self.port, at, direction, style)
         if self.output is not None:
             self.output.step(at, direction)
 
     def release(self) -> None:
         """Clear the motor's bits: both ends of its windings are low, which shorts them rather than leaves them open."""
         self._drive(self.shield.time.now, (0.0, 0.0))
+        self.shield.released(self.port, self.shield.time.now)
         if self.output is not None:
             self.output.energise(self.shield.time.now, on=False)
 
