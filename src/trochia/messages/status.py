@@ -70,7 +70,10 @@ class SwitchStatus(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Request(msgspec.Struct, frozen=True, kw_only=True):
-    """What the machine asks of its operator: ``kind`` tool, confirm or pause; answered by its number."""
+    """What the machine asks of its operator: ``kind`` tool, confirm, pause or code; answered by its number.
+
+    ``hook``: nothing is asked, a program of the machine's own runs (M100 to M199), and the job goes on after it.
+    """
 
     number: int
     kind: str
