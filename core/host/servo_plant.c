@@ -126,9 +126,12 @@ void trochia_plant_step(const trochia_plant *p, const trochia_plant_constants *k
                               p->h, command);
 }
 
+/* Beyond it a loop that runs away is seen as it is, up to infinity. */
+static const double COUNTABLE = 9e18;
+
 double trochia_plant_measured(const trochia_plant *p, const trochia_plant_state *s) {
     const double x = p->on_load ? s->load : s->motor;
-    if (p->encoder.watched && s->encoder.begun)
+    if (p->encoder.watched && s->encoder.begun && fabs(x * p->counts) < COUNTABLE)
         return (double)s->encoder.told / p->counts;
     return p->counts > 0.0 ? floor(x * p->counts) / p->counts : x;
 }

@@ -8,12 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from trochia.errors import ConfigError
+from trochia.errors import ConfigError, LimitError
 from trochia.kernels.servo import ServoKernel, ServoSamples
 from trochia.machine.edges import Edges
 from trochia.machine.encoder_speed import crossover, difference_noise, period_noise
 from trochia.machine.servo_plant import ServoPlant
-from trochia.servo import Loop, ServoAxis
+from trochia.servo import Loop, Pid, ServoAxis
 from trochia.servo.axis import plant_members
 
 PERIOD = 1e-3
@@ -137,6 +137,12 @@ def test_standing_on_an_edge_makes_no_counts() -> None:
     push = 0.01 * np.cos(40.0 * t)  # swings by 6 µrad: far less than a count
     measured = axis.run(np.zeros((4000, 3)), injected=push).measured
     assert np.ptp(measured) * COUNTS <= 1.0
+
+
+def test_a_loop_that_runs_away_is_named_and_comes_to_an_end() -> None:
+    plant = replace(FREE, edges=Edges(jitter=0.1, missed=0.01))
+    with pytest.raises(LimitError, match="run away"):
+        ServoAxis(plant, Loop(period=PERIOD, position=Pid(kp=-1e7))).run(np.full((5000, 3), 1.0))
 
 
 def test_any_cut_into_blocks_counts_the_same() -> None:

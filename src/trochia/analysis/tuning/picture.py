@@ -82,7 +82,9 @@ def tuning_picture(
                 _draw(plant, judged, (step, move, bode, nyquist), colour, name)
                 current.plot(judged.move_time * 1e3, judged.move_current, color=colour, linewidth=0.9, label=name)
                 f, whole = _opened(plant, judged.loop)
-                phase.semilogx(f, _phase(whole), color=colour, linewidth=1.4, label=name)
+                degrees = _phase(whole)
+                degrees[1:][np.abs(np.diff(degrees)) > 180.0] = np.nan  # no line from one edge to the other
+                phase.semilogx(f, degrees, color=colour, linewidth=1.4, label=name)
         current.set(title="motor current of that move", xlabel="time [ms]", ylabel="A")
         phase.set(title="phase of the loop", xlabel="frequency [Hz]", ylabel="°", yticks=[-360, -270, -180, -90, 0],
                   ylim=(-370, 10))  # fmt: skip
