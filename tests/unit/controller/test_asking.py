@@ -9,6 +9,7 @@ import pytest
 
 from trochia.controller.interrupted import interrupted
 from trochia.machine.io import Channel
+from trochia.machine.panel import Panel
 from trochia.machine.probe import Part, Probe
 from trochia.messages import command as c
 
@@ -268,3 +269,23 @@ def test_only_free_inputs_of_a_twin_are_set(bench, probing: Machine) -> None:
     assert "where the machine is" in b.command(c.SetInput(name="probe", value=1)).reason
     b.runtime.controller.report = replace(b.runtime.controller.report, actual=None)
     assert "real machine" in b.runtime.controller.command(c.SetInput(name="door", value=1), b.now).reason
+
+
+def test_an_override_and_a_door_while_it_waits(bench, probing: Machine) -> None:
+    b = bench(replace(probing, panel=Panel(door="door"), io=(*probing.io, Channel(name="go", kind="input")))).on()
+    b.ok(c.Load(name="p", text="G21 G90\nG0 X1\nM66 P2 L3 Q60\nG1 Y20 F600\nM2\n"))
+    b.ok(c.Run())
+    b.run(0.6)
+    b.ok(c.Override(feed=0.5))
+    b.run(0.1)
+    b.ok(c.SetInput(name="door", value=1))
+    b.run(until="held")
+    b.ok(c.SetInput(name="door", value=0))
+    b.ok(c.SetInput(name="go", value=1))
+    b.run(0.1)
+    assert b.status.state == "held"
+    b.ok(c.Resume())
+    b.run(1.0)
+    assert b.status.speed == pytest.approx(5.0)
+    b.run(until="idle")
+    assert b.at("Y") == pytest.approx(20.0)
