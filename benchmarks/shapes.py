@@ -28,13 +28,18 @@ def chain(points: Points, feed: float = 100.0) -> Program:
     return Program(name="chain", lines=len(moves), start=start, moves=moves, actions=())
 
 
-def curve(count: int = 100_000, chord: float = 0.2) -> Points:
-    """Return a rosette of five leaves walked in even chords: radius 8.3 mm at its tightest, straight between."""
+def curve(count: int = 100_000, chord: float = 0.2, spread: float = 0.0, seed: int = 1) -> Points:
+    """Return a rosette of five leaves walked in chords: radius 8.3 mm at its tightest, straight between.
+
+    ``spread`` is the part by which chords are longer or shorter, at random.
+    """
+    chance = np.random.default_rng(seed)
     fine = np.linspace(0.0, 2.0 * math.pi, 200_001)
     radius = 40.0 + 10.0 * np.cos(5.0 * fine)
     x, y = radius * np.cos(fine), radius * np.sin(fine)
     way = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
-    s = np.arange(count + 1) * chord % way[-1]
+    chords = chord * (1.0 + spread * chance.uniform(-1.0, 1.0, count))
+    s = np.concatenate([[0.0], np.cumsum(chords)]) % way[-1]
     return np.stack([np.interp(s, way, x), np.interp(s, way, y)], axis=1)
 
 
