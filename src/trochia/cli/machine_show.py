@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from trochia.cli import machine_corrections
 from trochia.machine.codecs import shortest
 from trochia.machine.rates import braking_distance, joint_velocity, resolution, step_rate
 from trochia.machine.schema import keys_of
@@ -41,6 +42,8 @@ def as_text(machine: Machine) -> str:
     facts += [f"profile {machine.profile}"] if machine.profile else []
     head = machine.name + (f": {machine.description}" if machine.description else "")
     parts = [f"{head}\n{'; '.join(facts)}", _axes(machine), _joints(machine)]
+    corrected = machine_corrections.rows(machine)
+    parts += [_table(corrected)] if corrected else []
     parts += [text for text in (_path(machine), _tools(machine), _io(machine)) if text]
     return "\n\n".join(parts)
 
@@ -157,6 +160,7 @@ def as_data(machine: Machine) -> dict[str, object]:
         },
         "axes": [_axis_data(axis) for axis in machine.axes],
         "joints": [_joint_data(machine, index) for index in range(len(machine.joints))],
+        "corrections": machine_corrections.corrections(machine),
         "spindle": machine.spindle and {
             "maximum_rpm": machine.spindle.maximum,
             "minimum_rpm": machine.spindle.minimum,

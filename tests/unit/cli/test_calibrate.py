@@ -90,6 +90,9 @@ def test_what_is_measured_is_taken_back(file, tmp_path):
     text = file.read_text()
     assert text.startswith("# mine\n")
     assert "# the long screw\n[joints.X]  # left side" in text
+    seen = call("machine", "show", file)
+    assert "16 points" in seen
+    assert "79." in seen  # a fifth for backlash, a little for the slope
     again = measured(load(file), "X", PLACES[1:-1] + 3.0)
     errors = np.array([m - c for c, m, _ in again])
     before = np.array([m - c for c, m, _ in rows])
