@@ -90,6 +90,7 @@ def _modes_of(state: State, *, at_return: bool) -> Modes:
         f"S{_text(state.speed)}",
         _TURNS[state.direction],
         _PLANES[state.plane],
+        "G40" if state.compensation is None else "G41" if state.compensation.side > 0 else "G42",
         "G43" if any(state.tool_offset) else "G49",
         SYSTEMS[state.system - 1],
         path,
