@@ -9,7 +9,8 @@ In: a plant and a loop.  Out: the loop with its feed-forward set, so that on the
             = v / gain                               of one that sets the speed: its own loop finds the torque
 
 What a controller does with the speed *measured* it would do against the motion; that is given to it on top.  A speed
-from the last n periods is n T/2 late, so it falls short by a n T/2: that is given too.
+from the last n periods is n T/2 late: under acceleration it falls short by a n T/2, which a controller takes for an
+error of speed and pushes for.  What that push comes to is taken off: Kp a n T/2, and of the integral Ki v n T/2.
 """
 
 from __future__ import annotations
@@ -38,7 +39,8 @@ def feed_forward(
     amplifier, motor, load = plant.amplifier, plant.motor_friction, plant.load_friction
     if amplifier.mode is Mode.SPEED:
         damping = 0.0 if loop.position is None else loop.position.kd * (1.0 - loop.position.c)
-        return replace(loop, viscous_forward=velocity * (1.0 / amplifier.gain + damping))
+        return replace(loop, viscous_forward=velocity * (1.0 / amplifier.gain + damping),
+                       acceleration_forward=-acceleration * damping * 0.5 * loop.period)  # fmt: skip
     late = 0.5 * loop.period * loop.averaged
     volts = amplifier.mode is Mode.VOLTAGE
     a_newton = (plant.resistance if volts else 1.0) / (plant.torque_constant * amplifier.gain)
@@ -48,10 +50,10 @@ def feed_forward(
         inertia += plant.inductance / plant.resistance * viscous  # L di/dt of the current that speed asks for
     dry = (motor.coulomb + load.coulomb) * a_newton + (amplifier.drop / amplifier.gain if volts else 0.0)
     if loop.speed is not None:
-        inertia += loop.speed.kp * late
+        inertia, viscous = inertia - loop.speed.kp * late, viscous - loop.speed.ki * late
     elif loop.position is not None:
         damping = loop.position.kd * (1.0 - loop.position.c)
-        viscous, inertia = viscous + damping, inertia + damping * 0.5 * loop.period
+        viscous, inertia = viscous + damping, inertia - damping * 0.5 * loop.period
     return replace(
         loop,
         speed_forward=velocity if loop.speed is not None else 0.0,

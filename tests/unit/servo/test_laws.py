@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -73,6 +75,28 @@ def test_the_integral_waits_for_rest_and_stops_at_its_limits():
     pushed = bits([6000] * 100 + [-100], [0] * 101, i33=1 << 16, i34=0, i31=0)
     assert pushed[99] == 20480
     assert pushed[100] < 0
+
+
+LOOPS = {
+    "pid": Loop(period=5e-4, position=Pid(kp=30.0, kd=0.6, c=0.0)),
+    "cascade": Loop(period=5e-4, position=Pid(kp=50.0), speed=Pid(kp=0.6, ki=20.0)),
+    "averaged": Loop(period=5e-4, position=Pid(kp=50.0), speed=Pid(kp=0.6, ki=20.0), averaged=4),
+}
+
+
+@pytest.mark.parametrize("name", LOOPS)
+def test_what_a_late_speed_makes_of_acceleration_is_taken_off(name):
+    """A parabolic move of a rigid plant: a ten-thousandth of it is left, where the push alone would leave ten times."""
+    plant = ServoPlant(torque_constant=0.1, motor_inertia=3e-4, motor_friction=Friction(viscous=5e-4))
+    loop = feed_forward(plant, LOOPS[name])
+    u = np.arange(801) / 800
+    wanted = np.stack([2 * u * u * (3 - 2 * u), 30 * u * (1 - u), 75 * (1 - 2 * u)], axis=1)
+    error = np.abs(wanted[:, 0] - ServoAxis(plant, loop).run(wanted).motor).max()
+    late = 0.5 * loop.period * loop.averaged
+    push = loop.position.kd if loop.speed is None else loop.speed.kp
+    with_push = replace(loop, acceleration_forward=loop.acceleration_forward + 2 * push * late)
+    assert error < 1e-4
+    assert np.abs(wanted[:, 0] - ServoAxis(plant, with_push).run(wanted).motor).max() > 10 * error
 
 
 @pytest.mark.parametrize("mode", [Mode.CURRENT, Mode.VOLTAGE])

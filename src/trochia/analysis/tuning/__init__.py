@@ -4,7 +4,6 @@ from trochia.analysis.tuning.margins import Margins, loop_margins, margins_of
 from trochia.analysis.tuning.models import Fopdt, Gains, Integrating, Ultimate
 from trochia.analysis.tuning.moves import Judged, Moves, judge
 from trochia.analysis.tuning.optimise import Robustness, optimise
-from trochia.analysis.tuning.session import Session
 from trochia.analysis.tuning.shaping import Shaped, shape
 
 #: name -> rule from a model of an axis to a cascade
@@ -19,7 +18,6 @@ __all__ = [
     "Margins",
     "Moves",
     "Robustness",
-    "Session",
     "Shaped",
     "Ultimate",
     "judge",

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from trochia.analysis.tuning import Moves, Robustness, Session, judge, loop_margins, optimise, shape
+from trochia.analysis.tuning import Moves, Robustness, judge, loop_margins, optimise, shape
 from trochia.analysis.tuning.classic import single_loop, ultimate
 from trochia.analysis.tuning.margins import is_stable
 from trochia.analysis.tuning.optimise import breach
@@ -92,13 +92,3 @@ def test_the_ultimate_gain_is_where_the_response_is_minus_one() -> None:
     found = ultimate(LAGGING, PERIOD)
     value = complex(plant_response(LAGGING, np.array([1.0 / found.time]), PERIOD)[0])
     assert found.gain * value == pytest.approx(-1.0, abs=1e-6)
-
-
-def test_gains_can_be_had_back() -> None:
-    first, second = (Loop(period=PERIOD, position=Pid(kp=kp)) for kp in (1.0, 2.0))
-    session = Session(first)
-    session.take(second)
-    assert session.before is first
-    assert session.undo() is first
-    with pytest.raises(LimitError, match="nothing to undo"):
-        session.undo()
