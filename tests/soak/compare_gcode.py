@@ -102,7 +102,8 @@ _STRICTER = (
     "the word ^ stands twice", "G4 has no time",
     # bounds, and profiles of lathe cycles: see docs/reference/gcode.md
     "would peck more than", "may repeat a cycle at most", "would take more than", "an arc of more than",
-    "cannot stand in the profile", " of its profile: ", "cannot stand beside G7", "G70 cannot move", "G71 cannot move",
+    "cannot stand in the profile", " of its profile: ", "cannot stand beside G7", " cannot move ",
+    "more than 10000 passes",
 )  # fmt: skip
 _MINUS_ONE = re.compile(r"[a-z] *(?:-+ *1(?:\.0*)?(?![\d.])|\[)", re.IGNORECASE)
 
