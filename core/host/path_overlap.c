@@ -19,6 +19,8 @@
 static const double ROOM = 0.25;
 /* A triangle's legs that take less of the shorter line are no part of a chain. */
 static const double LONE = 0.5;
+/* Nor is a jump of x' that is more than turning: another axis begins to move, or ends. */
+static const double CHORDS = 2.0;
 /* Where lines leave less than this of the range that P allows, an overlap gives way to a chain beside it, whose hats
  * would have to leave out their last joints: turning by less than this. */
 static const double PART = 0.6, SHALLOW = 0.35;
@@ -33,7 +35,7 @@ void trochia_overlap_want(const trochia_frame *frame, const trochia_curve *a, co
         both[i] = a->t1[i] + b->t0[i];
     /* the same jerk on both: v^3 = J / |x'''| */
     int faster = 2.0 * trochia_group_norm(frame, both) * leg * leg < turn->size * length * length;
-    if (!faster && leg >= LONE * shorter)
+    if (!faster && leg >= LONE * shorter && turn->size <= CHORDS)
         return;
     int kind = trochia_corner_worth(frame, a, b, turn, leg, &length);
     if (kind == TROCHIA_TURN_STOP) {

@@ -2,12 +2,12 @@
 #include "host/scurve_march.h"
 
 /* Exact enough: part of a run's time, and of a margin.  What is coarser here makes a plan depend on where it began. */
-static const double EXACT = 1e-13, NEAR = 1e-10;
+static const double EXACT = 1e-14, NEAR = 1e-12;
 /* Motion that may only just be arrested is: there is no way over what rounding leaves of a margin. */
 static const double STILL = 1e-9;
 /* Places of a leg that has been cut, where arrests are tried. */
 static const double PLACES[] = {0.5, 0.8, 0.95, 0.99};
-enum { PARTS = 1, PROBED = 4, MOST = 60 };
+enum { PROBED = 4, MOST = 60 };
 
 trochia_arrest trochia_probe(const trochia_track *track, const trochia_course *course, int64_t i,
                              const trochia_run *run, double time, int *joins) {
@@ -23,38 +23,50 @@ trochia_arrest trochia_probe(const trochia_track *track, const trochia_course *c
     return arrest;
 }
 
-/* The first of some moments of a run from which no arrest is possible, and the last before it; its end where there is
- * none.  Where budgets depend on speed, a run may be beyond an arrest for a while and back again. */
-static double first_failure(const trochia_track *track, int64_t i, const trochia_run *run, double *low) {
-    const trochia_stretch *stretch = &track->stretches[i];
-    double time = 0.0;
-    int unused;
-    *low = 0.0;
-    if (stretch->bend_a == 0.0 && stretch->twist_j == 0.0)
-        return run->time;
-    if (run->count && run->legs[0].a > 0.0 && trochia_probe(track, NULL, i, run, 0.0, &unused).margin <= STILL)
-        return 0.0;
-    for (int k = 0; k < run->count; time += run->legs[k++].duration)
-        for (int part = 1; part <= PARTS; part++) {
-            double at = time + run->legs[k].duration * part / PARTS;
-            if (trochia_probe(track, NULL, i, run, at, &unused).margin < 0.0)
-                return at;
-            *low = at;
-        }
-    return run->time;
-}
-
-/* Nears the last moment between one that leaves an arrest and one that does not. */
+/* Between a moment that leaves an arrest and one that does not. */
 typedef struct {
     double low, high;
     trochia_arrest arrest; /* from low */
+    int known;             /* arrest is that */
+    double over;           /* margin at high */
     int joins, barrier;    /* what forbids high */
 } trochia_bracket;
 
+/* Looks at the ends of a run's legs: 1 where no arrest is possible from one, the first of these then is high.  Where
+ * budgets depend on speed, a run may be beyond an arrest for a while and back again. */
+static int fails(const trochia_track *track, int64_t i, const trochia_run *run, trochia_bracket *b) {
+    int unused;
+    double time = 0.0;
+    if (!run->count || run->legs[0].a > 0.0) {
+        b->arrest = trochia_probe(track, NULL, i, run, 0.0, &unused);
+        b->known = 1;
+        if (run->count && b->arrest.margin <= STILL) {
+            b->high = 0.0;
+            return 0;
+        }
+    }
+    for (int k = 0; k < run->count; k++) {
+        time += run->legs[k].duration;
+        trochia_arrest found = trochia_probe(track, NULL, i, run, time, &unused);
+        if (found.margin < 0.0) {
+            b->high = time;
+            b->over = found.margin;
+            b->barrier = found.barrier;
+            return 1;
+        }
+        b->low = time;
+        b->arrest = found;
+        b->known = 1;
+    }
+    return 0;
+}
+
 static void narrow(const trochia_track *track, const trochia_course *course, int64_t i, const trochia_run *run,
-                   double over, trochia_bracket *b) {
+                   trochia_bracket *b) {
     int unused, stayed = 0;
-    b->arrest = trochia_probe(track, course, i, run, b->low, &unused);
+    if (!b->known)
+        b->arrest = trochia_probe(track, course, i, run, b->low, &unused);
+    double over = b->over;
     double under = trochia_smaller(trochia_larger(b->arrest.margin, 0.0), 1.0);
     if (b->low == 0.0 && under <= STILL && run->count && run->legs[0].a > 0.0)
         return;
@@ -95,37 +107,45 @@ static double begin_of(const trochia_run *run, double time) {
     return begin;
 }
 
-/* A moment of the leg that a bracket has cut, before that, from which no arrest is possible; negative: there is none.
- */
-static double gap_before(const trochia_track *track, int64_t i, const trochia_run *run, const trochia_bracket *b,
-                         double *over) {
+/* Looks before what a bracket has found, in the leg that it cuts, for a moment from which no arrest is possible: then
+ * that is the new bracket's end. */
+static int has_gap(const trochia_track *track, int64_t i, const trochia_run *run, trochia_bracket *b) {
     double begin = begin_of(run, b->low);
     int unused;
     for (int part = 0; part < PROBED; part++) {
         double at = begin + PLACES[part] * (b->low - begin);
-        *over = trochia_probe(track, NULL, i, run, at, &unused).margin;
-        if (*over < 0.0)
-            return at;
+        double margin = trochia_probe(track, NULL, i, run, at, &unused).margin;
+        if (margin < 0.0) {
+            *b = (trochia_bracket){.low = begin_of(run, at), .high = at, .over = margin};
+            return 1;
+        }
     }
-    return -1.0;
+    return 0;
 }
 
 double trochia_search(const trochia_track *track, const trochia_course *course, int64_t i, const trochia_run *run,
                       trochia_arrest *arrest, int *joins, int *barrier) {
-    double low = 0.0, high = course ? run->time : first_failure(track, i, run, &low);
-    *arrest = trochia_probe(track, course, i, run, high, joins);
-    *barrier = high == 0.0 && arrest->margin < 0.0 && arrest->barrier;
-    if (arrest->margin >= 0.0 || high == 0.0)
-        return high;
-    trochia_bracket b = {.low = low, .high = high, .joins = *joins, .barrier = arrest->barrier};
-    narrow(track, course, i, run, arrest->margin, &b);
-    for (int k = 0; k < 3 && !course && track->stretches[i].free < INFINITY && b.low > 0.0; k++) {
-        double over, at = gap_before(track, i, run, &b, &over);
-        if (at < 0.0)
-            break;
-        b = (trochia_bracket){.low = begin_of(run, at), .high = at};
-        narrow(track, course, i, run, over, &b);
+    trochia_bracket b = {.high = run->time};
+    int bends = !course && track->stretches[i].free < INFINITY;
+    *joins = *barrier = 0;
+    if (bends) {
+        if (!fails(track, i, run, &b)) {
+            *arrest = b.arrest;
+            *barrier = b.high == 0.0 && b.arrest.margin < 0.0 && b.arrest.barrier;
+            return b.high;
+        }
+    } else {
+        *arrest = trochia_probe(track, course, i, run, b.high, joins);
+        *barrier = b.high == 0.0 && arrest->margin < 0.0 && arrest->barrier;
+        if (arrest->margin >= 0.0 || b.high == 0.0)
+            return b.high;
+        b.over = arrest->margin;
+        b.joins = *joins;
+        b.barrier = arrest->barrier;
     }
+    narrow(track, course, i, run, &b);
+    for (int k = 0; k < 3 && bends && b.low > 0.0 && has_gap(track, i, run, &b); k++)
+        narrow(track, course, i, run, &b);
     *arrest = b.arrest;
     *joins = b.joins;
     *barrier = b.barrier;
