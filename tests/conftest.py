@@ -29,6 +29,7 @@ def _load(name):
     return module
 
 
+_load("steady_spans")
 chip_program, board_image = _load("chip_fixtures").chip_program, _load("chip_fixtures").board_image
 
 

@@ -2,7 +2,8 @@
  *
  * Consistent-overhead byte stuffing takes every zero out of a frame, so that a zero always ends one and a receiver is
  * in step again after the next zero, whatever was lost.  CRC-16 with polynomial x^16 + x^12 + x^5 + 1, lowest bit
- * first, from 0xffff; over a frame with its CRC it is 0. */
+ * first, from 0xffff, sent inverted: over a frame with its CRC it is TROCHIA_CRC_WHOLE, and a zero more or less is
+ * seen. */
 #ifndef TROCHIA_FRAME_H
 #define TROCHIA_FRAME_H
 
@@ -16,6 +17,8 @@ enum trochia_frame_sizes {
     TROCHIA_FRAMED = TROCHIA_FRAME + 2   /* with stuffing and the zero */
 };
 #endif
+
+enum trochia_crc_figures { TROCHIA_CRC_WHOLE = 0xf0b8 };
 
 enum trochia_frame_event { TROCHIA_NOTHING = 0, TROCHIA_WHOLE = 1, TROCHIA_BROKEN = 2 };
 
@@ -56,7 +59,7 @@ static inline uint8_t trochia_frame_take(trochia_frame_in *in, uint8_t byte) {
     if (byte == 0) {
         if (in->length == 0 && in->block == 0 && !in->bad)
             return TROCHIA_NOTHING; /* zeros between frames */
-        if (in->bad || in->block || in->length < 4 || in->crc)
+        if (in->bad || in->block || in->length < 4 || in->crc != TROCHIA_CRC_WHOLE)
             return TROCHIA_BROKEN;
         in->length = (uint8_t)(in->length - 2);
         return TROCHIA_WHOLE;
@@ -105,7 +108,7 @@ static inline void trochia_frame_begin(trochia_frame_out *out, uint8_t *bytes, u
 
 /* Ends a frame and returns its length on the line. */
 static inline uint8_t trochia_frame_end(trochia_frame_out *out) {
-    uint16_t crc = out->crc;
+    uint16_t crc = (uint16_t)~out->crc;
     trochia_frame_stuff(out, (uint8_t)crc);
     trochia_frame_stuff(out, (uint8_t)(crc >> 8));
     out->bytes[out->code] = (uint8_t)(out->length - out->code);

@@ -1,9 +1,9 @@
 /* What host and chip say to each other.  This file is the schema: its hash is compiled into both sides and exchanged
  * at hello.  All figures are little endian; structs are laid out so that no compiler pads them.
  *
- * A frame is: sequence number, type, payload, CRC-16; byte-stuffed (frame.h), ended by a zero.  Orders that must come
- * in order and once (types below TROCHIA_LOOSE) are numbered; the chip takes the one it expects, and tells which that
- * is in every frame it sends.  The others are idempotent: lost ones are sent again.
+ * A frame is: sequence number, type, payload, CRC-16 (inverted); byte-stuffed (frame.h), ended by a zero.  Orders that
+ * must come in order and once (types below TROCHIA_LOOSE) are numbered; the chip takes the one it expects, and tells
+ * which that is in every frame it sends.  The others are idempotent: lost ones are sent again.
  *
  * Legend: tick = of the chip's clock; stream time = ticks of planned motion since BEGIN; rate = stream time a tick,
  * 2^-15; slice = 2^14 ticks, in which the rate is constant. */

@@ -49,11 +49,11 @@ enum trochia_far { TROCHIA_LONG = 1L << 22 /* no two steps so far apart are in o
 enum trochia_timeline_bounds {
     TROCHIA_LONGEST_RUN = 100,
     TROCHIA_AHEAD = 3,
-    TROCHIA_SLOT = 128,  /* ticks */
-    TROCHIA_CHUNK = 64,  /* slots that are filled at once */
-    TROCHIA_SPARE = 4,   /* more, for steps that found theirs taken where a span ends */
-    TROCHIA_APART = 64,  /* ticks between pulses, at least */
-    TROCHIA_SPECIAL = 32 /* ticks from a pulse to an entry that is none */
+    TROCHIA_SLOT = 128, /* ticks */
+    TROCHIA_CHUNK = 64, /* slots that are filled at once */
+    TROCHIA_SPARE = 4,  /* more, for steps that found theirs taken where a span ends */
+    TROCHIA_APART = 64, /* ticks between pulses, at least, and from a change of direction to a pulse */
+    TROCHIA_SPECIAL = 0 /* from or to other entries that are no pulses */
 };
 
 typedef struct trochia_motor {
@@ -74,6 +74,7 @@ typedef struct {
     uint16_t rate;
     uint16_t length; /* stream time of the slice; 0: none is begun */
     uint16_t last;   /* real tick of the last entry in the slice */
+    uint8_t apart;   /* ticks from it to the next pulse, at least */
     uint16_t number; /* of the span */
     uint16_t extra;  /* the stretch less one, where it is below two [2^-16]: then */
     uint8_t brisk;   /* says so, and costs less */
@@ -136,6 +137,7 @@ static inline uint16_t trochia_timeline_delta(trochia_timeline *line, uint16_t r
     if ((int16_t)(delta - gap) < 0)
         delta = gap;
     line->last = (uint16_t)(line->last + delta);
+    line->apart = TROCHIA_SPECIAL;
     return delta;
 }
 
@@ -146,6 +148,8 @@ static inline uint8_t trochia_timeline_put(trochia_timeline *line, uint16_t delt
     TROCHIA_RING(line, head++) = (uint8_t)(delta >> 8);
     TROCHIA_RING(line, head++) = pins;
     TROCHIA_RING(line, head++) = count;
+    if (count || pins & TROCHIA_GRID)
+        line->apart = TROCHIA_APART;
     return head;
 }
 
@@ -161,6 +165,8 @@ static inline void trochia_timeline_act(trochia_timeline *line, uint16_t at, con
     uint8_t head = trochia_timeline_put(line, delta, TROCHIA_ACT, 0);
     for (uint8_t i = 0; i < 4; i++)
         TROCHIA_RING(line, head++) = four[i];
+    if (four[0])
+        line->apart = TROCHIA_APART;
     TROCHIA_PUBLISH(line, head);
 }
 
@@ -214,7 +220,7 @@ static inline void trochia_timeline_alone(trochia_timeline *line, trochia_motor 
             count = count >> 1;
         if (!count)
             count = 1; /* the last step of its segment */
-        uint16_t delta = trochia_timeline_delta(line, (uint16_t)(real >> 8), TROCHIA_APART);
+        uint16_t delta = trochia_timeline_delta(line, (uint16_t)(real >> 8), line->apart);
         uint8_t head = trochia_timeline_put(line, delta, motor->pin, count);
         if (count > 1) {
             interval = trochia_real_fine(line, interval);
@@ -318,7 +324,7 @@ static inline uint8_t trochia_timeline_chunk(trochia_timeline *line, int32_t fir
     enum { HALF = TROCHIA_SLOT / 2 };
     if (trochia_timeline_space(line) < TROCHIA_CHUNK + TROCHIA_SPARE + 24)
         return 0;
-    uint8_t start = (uint8_t)((uint16_t)(line->last + TROCHIA_SLOT - 1) / TROCHIA_SLOT);
+    uint8_t start = (uint8_t)((uint16_t)(line->last + line->apart + HALF - 1) / TROCHIA_SLOT);
     uint16_t early = first < 0 ? 0u : (uint16_t)(first >> 8);
     uint8_t slot = (uint8_t)(trochia_real(line, early) / TROCHIA_SLOT);
     if (slot > start)
@@ -354,7 +360,7 @@ static inline uint8_t trochia_timeline_chunk(trochia_timeline *line, int32_t fir
     while (!TROCHIA_RING(line, from + before))
         before++;
     uint16_t at = (uint16_t)((start + before) * TROCHIA_SLOT + HALF);
-    uint16_t delta = trochia_timeline_delta(line, at, TROCHIA_APART);
+    uint16_t delta = trochia_timeline_delta(line, at, line->apart);
     slots = (uint8_t)(slots - before);
     uint8_t bytes = TROCHIA_PACK(line, from, (uint8_t)(from + before), slots);
     trochia_timeline_put(line, delta, TROCHIA_GRID | bytes, 0);

@@ -81,6 +81,7 @@ static inline void trochia_timeline_begin(trochia_timeline *line) {
     line->full = 1;
     line->brisk = 0;
     line->length = line->last = line->slew = 0;
+    line->apart = TROCHIA_SPECIAL;
     line->brake = line->loaded = line->crowded = line->dense = 0;
     line->rest = 1;
 }

@@ -23,7 +23,7 @@
 #include <avr/io.h>
 
 #define USART_RX_vect USART0_RX_vect /* it has four serial ports; this one is on the USB */
-#define USART_UDRE_vect USART0_UDRE_vect
+#define USART_TX_vect USART0_TX_vect
 
 static const char board_name[12] = "mega-stepdir";
 static const uint8_t board_pins[BOARD_MOTORS] = {1 << 2, 1 << 3, 1 << 4, 1 << 5, 1 << 6, 1 << 7};

@@ -108,6 +108,7 @@ reload:
     sbic ACTS
     rjmp act
 load:
+    nop
     last r30
     mov r30, TAIL
     ldi r31, hi8(step_ring)

@@ -87,8 +87,10 @@ static void send(void) {
         put(&out, &ack, sizeof ack);
     }
     send_end = trochia_frame_end(&out);
-    send_next = 0;
-    UCSR0B |= 1 << UDRIE0;
+    send_next = 1;
+    UCSR0A = 1 << U2X0 | 1 << TXC0; /* clears the flag */
+    UCSR0B |= 1 << TXCIE0;
+    UDR0 = sending[0];
 }
 
 static void hello(const uint8_t *payload) {
@@ -175,6 +177,6 @@ void link_work(void) {
         trochia_frame_reset(&in);
         break;
     }
-    if (wanted && !(UCSR0B & 1 << UDRIE0))
+    if (wanted && !(UCSR0B & 1 << TXCIE0))
         send();
 }

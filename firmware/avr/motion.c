@@ -21,7 +21,7 @@ uint16_t silence_most;
 uint8_t state, cause, epoch, enabled, underway, end_put;
 uint32_t caught_at;
 static uint16_t next_number;
-static uint8_t outputs_put; /* levels, when all that is in the ring has happened */
+static uint8_t outputs_put, power_put; /* when all that is in the ring has happened */
 static uint32_t span_duration;
 
 void motion_setup(void) {
@@ -34,11 +34,7 @@ void motion_setup(void) {
     TIMSK1 = 1 << TOIE1;
 }
 
-static volatile uint16_t overflows;
-
-ISR(TIMER1_OVF_vect) {
-    overflows++;
-}
+volatile uint16_t overflows; /* line_io.S */
 
 uint32_t motion_clock(void) {
     uint16_t low, high;
@@ -116,6 +112,7 @@ void motion_begin(const trochia_begin *order) {
     epoch = order->epoch;
     queue_clear();
     trochia_timeline_begin(&line);
+    power_put = span_power;
     next_number = 0;
     cause = TROCHIA_NO_CAUSE;
     state = TROCHIA_LOADING;
@@ -224,7 +221,9 @@ static uint8_t take_up(void) {
         four[2] = ONLY_BEAM;
     if (four[2] == TROCHIA_SET_OUTPUTS)
         outputs_put = span.outputs;
-    trochia_timeline_act(&line, (uint16_t)start, four);
+    if (four[2] != ONLY_BEAM || span.power != power_put)
+        trochia_timeline_act(&line, (uint16_t)start, four);
+    power_put = span.power;
     line.backwards = back;
     return 1;
 }
