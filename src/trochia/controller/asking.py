@@ -1,4 +1,4 @@
-"""A program that asks the machine, and goes on by what it answers: probing moves, M66.
+"""A program that asks, and goes on by the answer: the operator, or the machine by probing moves and M66.
 
 In: a job at its question.  Out: the probe is watched, the answer is kept, and the rest of the program is read, planned
 and run from where the machine stands.
@@ -10,18 +10,33 @@ from typing import TYPE_CHECKING
 
 from trochia.backends.live import Orders, Trouble
 from trochia.controller.answer_entries import entry_of
-from trochia.controller.job import Job, Options
+from trochia.controller.job import BLOCK_END, Job, Options
 from trochia.controller.readying import MDI
 from trochia.controller.rerun import Entry
 from trochia.controller.status import axes_of
 from trochia.errors import TrochiaError
 from trochia.languages.gcode.answers import Answer, Probed, Read
 from trochia.messages import Cause
-from trochia.program import AXES, Probe
+from trochia.program import AXES, Pause, Probe, ToolChange, UserCode
 
 if TYPE_CHECKING:
     from trochia.controller.controller import Controller
     from trochia.controller.readying import Ready
+
+
+def ask_for(it: Controller, job: Job) -> None:
+    """Ask the operator for what a job waits for."""
+    match job.waiting:
+        case ToolChange(tool=tool):
+            it.ask("tool", f"put tool {tool} in, then resume")
+        case UserCode(number=number) as code if number in it.hooked:
+            it.ask("hook", f"{code} runs; the program goes on when it has ended")
+        case UserCode() as code:
+            it.ask("code", f"{code}: do what it stands for, then resume")
+        case Pause() if job.waiting is not BLOCK_END:
+            it.ask("pause", "the program has stopped; resume goes on")
+        case _:
+            it.ask("pause", "the block is done; resume or step goes on")
 
 
 def probe(it: Controller, job: Job) -> None:

@@ -12,12 +12,13 @@ import numpy as np
 
 from trochia.backends.live import Orders, Trouble
 from trochia.controller.alarms import TROUBLES, Alarms
-from trochia.controller.asking import go_on, probe
+from trochia.controller.asking import ask_for, go_on, probe
+from trochia.controller.away import Away, detour, go_back
 from trochia.controller.doings import OUTPUTS_OFF
 from trochia.controller.guards import Guards
 from trochia.controller.handlers import HANDLERS
 from trochia.controller.interrupted import Interrupted, work_entry
-from trochia.controller.job import BLOCK_END, Job
+from trochia.controller.job import Job
 from trochia.controller.jog import Jog
 from trochia.controller.lock import Lock
 from trochia.controller.outputs import Outputs
@@ -27,7 +28,7 @@ from trochia.controller.states import MOVING, TABLE, Event, State, legal
 from trochia.controller.status import axes_of, axis_statuses, io_of, position_of, unit_of
 from trochia.errors import TrochiaError
 from trochia.messages import Ack, Cause, OverrideStatus, ProgramStatus, Request, Status, SwitchStatus
-from trochia.program import AXES, Pause, ToolChange, UserCode, WorkState
+from trochia.program import AXES, WorkState
 
 if TYPE_CHECKING:
     from trochia.backends.live import Report
@@ -88,6 +89,8 @@ class Controller:
         self.asked = 0.0  # when a command came last [s]
         self.resume_at: float | None = None  # when a job is resumed whose spindle has to get to its speed first [s]
         self._spindle_stopped = False
+        self.away: Away | None = None  # a held job whose tool was taken away
+        self.leaving = False  # whether it is to be, at rest
         self.armed = machine.beam is None
         self.trusted = {axis.name: axis.home is None for axis in machine.axes}
         self.journal: list[tuple[str, dict[str, Any]]] = []
@@ -225,9 +228,14 @@ class Controller:
         self.distrust()
         self.enter(State.ESTOP)
 
+    @property
+    def job(self) -> Job | None:
+        """The job under way, also one whose tool was taken away; None: there is none."""
+        return self.away.job if self.away else self.activity if isinstance(self.activity, Job) else None
+
     def stop_spindle(self) -> None:
         """Stop the spindle of the job under way, until it is resumed."""
-        if isinstance(self.activity, Job) and self.activity.doings.speed and self.machine.spindle is not None:
+        if self.job is not None and self.job.doings.speed and self.machine.spindle is not None:
             self.pending.append(Orders(outputs={"spindle": 0.0}))
             self._spindle_stopped = True
 
@@ -257,6 +265,9 @@ class Controller:
 
     def end(self, *, whole: bool) -> None:
         """Be no longer busy; a program that has not come to its end can be gone on with."""
+        place = self.away.place if self.away else self.position()
+        self.settle()
+        self.away, self.leaving = None, False
         made, job = self.running, self.activity
         self._message()  # while the job is there to be asked
         if made is not None and isinstance(job, Job) and not self.lock.shut:
@@ -266,7 +277,7 @@ class Controller:
                 start = dict(zip(AXES, made.start, strict=True))
                 self.interrupted = Interrupted(
                     name=made.name, text=made.text, start=start, work=work_entry(made.found), line=self.report.line,
-                    block_delete=self.switches.block_delete, position=self.position(), closed=True,
+                    block_delete=self.switches.block_delete, position=place, closed=True,
                     move=int(point["move"]), distance=point["distance"], done_s=point["done_s"],
                     answers=made.answers or (),
                 )  # fmt: skip
@@ -285,6 +296,9 @@ class Controller:
         """Resume the job once its spindle is at speed."""
         if self.resume_at is not None and self.report.time >= self.resume_at and isinstance(self.activity, Job):
             self.resume_at = None
+            if self.away is not None:
+                go_back(self, self.away)
+                return
             self.back = self.activity.resume(self.report, feed=self.overrides.feed, rapid=self.overrides.rapid)
 
     def _look_at_power(self) -> None:
@@ -320,6 +334,8 @@ class Controller:
         if self.state is State.ALARM and event is Event.STILL:
             self.activity = None  # motion has come to rest; the alarm stays
             return
+        if event is Event.STILL and (self.leaving or self.away is not None) and detour(self):
+            return
         target = TABLE.get((self.state, event))
         if target is None:
             return
@@ -331,27 +347,21 @@ class Controller:
         if activity is not None and event in {Event.STILL, Event.PAUSED} and self.state is not State.HOLDING:
             self.pending.append(activity.finish(whole=self.state is not State.STOPPING))
         if event is Event.PAUSED and isinstance(activity, Job):
-            self._ask_for(activity)
+            ask_for(self, activity)
         if target is State.IDLE and activity is not None:
             self._end()
         self.enter(target)
 
-    def _ask_for(self, job: Job) -> None:
-        match job.waiting:
-            case ToolChange(tool=tool):
-                self.ask("tool", f"put tool {tool} in, then resume")
-            case UserCode(number=number) as code if number in self.hooked:
-                self.ask("hook", f"{code} runs; the program goes on when it has ended")
-            case UserCode() as code:
-                self.ask("code", f"{code}: do what it stands for, then resume")
-            case Pause() if job.waiting is not BLOCK_END:
-                self.ask("pause", "the program has stopped; resume goes on")
-            case _:
-                self.ask("pause", "the block is done; resume or step goes on")
+    def settle(self) -> None:
+        """Let a job whose tool is away be what is under way again; its clock stood still."""
+        if self.away is not None:
+            self.away.stand_still(self.report.executed)
+            self.activity = self.away.job
 
     def _end(self) -> None:
         """Be no longer busy: keep what a program leaves set up."""
         whole = self.state in {State.RUNNING, State.STEPPING, State.RESUMING}
+        self.settle()
         if isinstance(self.activity, Job) and not whole:
             self.pending.append(Orders(lit=False, outputs=OUTPUTS_OFF))
         elif self.running is not None:
@@ -381,7 +391,8 @@ class Controller:
         if now - self._pointed < POINT - 1e-9 or not (moving or self._moved) or self.lock.shut:
             return
         self._pointed, self._moved = now, moving
-        data: dict[str, object] = {"line": self.report.line, "position": self.position()}
+        place = self.away.place if self.away else self.position()
+        data: dict[str, object] = {"line": self.report.line, "position": place}
         if isinstance(self.activity, Job) and self.running is not None and self.running.name != MDI:
             data |= self.activity.point(self.report)
         self.note("point", **data)

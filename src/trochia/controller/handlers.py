@@ -93,8 +93,9 @@ def step(it: Controller, _command: c.Step, _now: float) -> str:
     if it.state is State.HELD and isinstance(it.activity, Job):
         if not it.activity.options.block_by_block:
             raise LocalProtocolError("the job was not started block by block", hint="Resume it, or begin with step.")
+        job = it.activity
         told = resume(it, c.Resume(), 0.0)
-        it.activity.by_block = True
+        job.by_block = True
         return told
     return start(it, block_by_block=True)
 

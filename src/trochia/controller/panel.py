@@ -9,7 +9,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from trochia.backends.live import Orders, Trouble
-from trochia.controller.job import Job
 from trochia.controller.states import MOVING, TABLE, Event, State
 from trochia.errors import LocalProtocolError
 from trochia.messages import Cause
@@ -19,7 +18,7 @@ if TYPE_CHECKING:
     from trochia.machine.panel import Panel
 
 #: states in which an open door brakes what moves; a jog goes on: whoever jogs may have to reach in
-_BRAKED = MOVING - {State.JOGGING, State.HOLDING, State.STOPPING}
+_BRAKED = MOVING - {State.JOGGING, State.HOLDING, State.RETRACTING, State.STOPPING}
 _QUIET = frozenset({State.OFF, State.ESTOP, State.ALARM})
 
 
@@ -75,7 +74,7 @@ class Watch:
         self._lit = not dark
         if self.active(it, "door"):
             self._brake(it, "the door is open: close it, then resume")
-        elif dark and isinstance(it.activity, Job) and not it.activity.options.dark and it.armed:
+        elif dark and it.job is not None and not it.job.options.dark and it.armed:
             self._brake(it, f"{dark}: turn it on, then resume")
         self._release(it, now)
 
@@ -86,8 +85,9 @@ class Watch:
         it.activity.hold(it.report, it.latency)
         it.enter(TABLE[it.state, "hold"])
         it.note("guard", text=text)
-        if isinstance(it.activity, Job) and it.state is State.HOLDING:
+        if it.job is not None and it.state is State.HOLDING:
             it.stop_spindle()
+            it.leaving = it.away is None
             it.ask("guard", text)
 
     def _release(self, it: Controller, now: float) -> None:

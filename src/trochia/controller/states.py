@@ -22,6 +22,7 @@ class State(Enum):
     JOGGING = "jogging"
     RUNNING = "running"
     HOLDING = "holding"  # braking along the path
+    RETRACTING = "retracting"  # taking the tool away from the part, after a hold for a door
     HELD = "held"  # at rest in a job: held, paused by the program, or waiting for its operator
     RESUMING = "resuming"  # back to where the beam went out, then on
     STEPPING = "stepping"  # running to the end of one block
@@ -32,6 +33,7 @@ class State(Enum):
 class Event(Enum):
     """What happens without being asked for."""
 
+    AWAY = "Away"  # a job at rest in a hold is left by its tool
     STILL = "Still"  # the motion under way has come to its end, or braking has
     PAUSED = "Paused"  # the program waits: M0, M1, a tool change, the end of a block
     PROBE = "Probe"  # the program's next move is a probing move
@@ -47,7 +49,7 @@ class Event(Enum):
 #: states in which motion is under way
 MOVING = frozenset({
     State.HOMING, State.JOGGING, State.RUNNING, State.HOLDING, State.RESUMING, State.STEPPING, State.PROBING,
-    State.STOPPING,
+    State.STOPPING, State.RETRACTING,
 })  # fmt: skip
 
 #: commands that are taken in every state and change none
@@ -73,6 +75,8 @@ _JOBS = {
     (State.PROBING, "hold"): State.STOPPING,
     (State.PROBING, Event.CONTACT): State.RUNNING,
     (State.HOLDING, Event.STILL): State.HELD,
+    (State.HOLDING, Event.AWAY): State.RETRACTING,
+    (State.RETRACTING, Event.STILL): State.HELD,
     (State.HELD, "resume"): State.RESUMING,
     (State.HELD, "step"): State.STEPPING,
     (State.HELD, "abort"): State.IDLE,

@@ -22,6 +22,8 @@ class Panel:
         Active while the beam may be lit.
     estop
         Active while the button is pressed.
+    retract
+        Way that Z goes up, where there is room, when the door or the key holds a job [mm].
     idle_release
         Drives go off when nothing was asked for so long [s].
     """
@@ -30,6 +32,9 @@ class Panel:
     interlock: str | None = field(default=None, metadata=key(Text(), "input that is active while it is broken"))
     arm: str | None = field(default=None, metadata=key(Text(), "input that is active while the beam may be lit"))
     estop: str | None = field(default=None, metadata=key(Text(), "input that is active while the button is pressed"))
+    retract: float | None = field(
+        default=None, metadata=key(Quantity("length"), "way Z goes up when the door or the key holds", Bound.POSITIVE)
+    )
     idle_release: float | None = field(
         default=None, metadata=key(Quantity("time"), "drives go off when nothing was asked for so long", Bound.POSITIVE)
     )

@@ -172,3 +172,93 @@ def test_a_beam_is_dark_from_the_door_on(bench, laser: Machine) -> None:
     since = len(b.trace)
     b.run(until="held")
     assert not any(beam for _, _, beam, _ in b.trace[since:])
+
+
+LOW = "G21 G90 G94 M3 S1000\nG1 Z-20 F1200\nG1 X40 F1200\nM2\n"
+
+
+@pytest.fixture
+def lifted(mill: Machine) -> Machine:
+    return replace(mill, panel=replace(PANEL, retract=15.0))
+
+
+def open_inside(b) -> tuple[float, float]:
+    """Open the door in the middle of X, and return where the job rests."""
+    b.ok(c.Load(name="p", text=LOW))
+    b.ok(c.Run())
+    b.run(2.4)
+    assert 0.0 < b.at("X") < 40.0
+    put(b, "gate", 1)
+    b.run(until="retracting")
+    return b.at("X"), b.at("Z")
+
+
+def test_the_tool_goes_up_and_comes_back_before_the_job_goes_on(bench, lifted: Machine) -> None:
+    b = bench(lifted).on()
+    x, z = open_inside(b)
+    assert z == pytest.approx(-20.0, abs=0.01)
+    b.run(until="held")
+    assert (b.at("X"), b.at("Z")) == pytest.approx((x, z + 15.0), abs=1e-6)
+    held = b.status.program
+    assert held is not None
+    put(b, "gate", 0)
+    b.ok(c.Resume())
+    since = len(b.trace)
+    b.run(0.02)
+    b.run(until="running")
+    back = [position for _, position, *_ in b.trace[since:]]
+    assert min(row[2] for row in back) == pytest.approx(z, abs=1e-6)
+    assert all(row[0] == pytest.approx(x, abs=0.5) for row in back)
+    b.run(until="idle")
+    assert (b.at("X"), b.at("Z")) == pytest.approx((40.0, -20.0), abs=1e-9)
+    assert not b.status.alarms
+
+
+def test_the_door_again_on_the_way_back(bench, lifted: Machine) -> None:
+    b = bench(lifted).on()
+    x, _ = open_inside(b)
+    b.run(until="held")
+    put(b, "gate", 0)
+    b.ok(c.Resume())
+    b.run(0.6)  # half a second of it the spindle
+    put(b, "gate", 1)
+    status = b.run(until="held")
+    assert status.spindle == 0.0
+    assert b.at("X") == pytest.approx(x, abs=1e-6)
+    assert -20.0 < b.at("Z") < -4.0
+    put(b, "gate", 0)
+    b.ok(c.Resume())
+    b.run(0.02)
+    b.run(until="idle")
+    assert (b.at("X"), b.at("Z")) == pytest.approx((40.0, -20.0), abs=1e-9)
+
+
+@pytest.mark.parametrize("when", ["retracting", "held"])
+def test_a_job_given_up_with_its_tool_away_can_be_gone_on_with_where_it_was(bench, lifted: Machine, when: str) -> None:
+    b = bench(lifted).on()
+    x, z = open_inside(b)
+    if when == "held":
+        b.run(until="held")
+    b.ok(c.Abort())
+    b.run(until="idle")
+    job = b.runtime.controller.interrupted
+    assert job is not None
+    assert (job.position["X"], job.position["Z"]) == pytest.approx((x, z), abs=1e-6)
+    put(b, "gate", 0)
+    b.ok(c.RunFrom(line=0, confirmed=True))
+    b.run(0.02)
+    b.run(until="idle")
+    assert (b.at("X"), b.at("Z")) == pytest.approx((40.0, -20.0), abs=1e-9)
+
+
+def test_the_button_with_the_tool_on_its_way_up(bench, lifted: Machine) -> None:
+    b = bench(lifted).on()
+    open_inside(b)
+    put(b, "button", 1)
+    assert b.run(0.02).state == "estop"
+    assert b.runtime.controller.away is None
+    put(b, "button", 0)
+    put(b, "gate", 0)
+    b.ok(c.Reset())
+    b.on()
+    assert b.status.state == "idle"
