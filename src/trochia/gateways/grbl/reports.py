@@ -17,7 +17,8 @@ LETTERS = "XYZ"
 #: state of the controller -> what GRBL calls it
 STATES = {
     "off": "Sleep", "estop": "Alarm", "alarm": "Alarm", "idle": "Idle", "homing": "Home", "jogging": "Jog",
-    "running": "Run", "resuming": "Run", "stepping": "Run", "probing": "Run", "stopping": "Run", "holding": "Hold:1", "retracting": "Hold:1",
+    "running": "Run", "resuming": "Run", "stepping": "Run", "probing": "Run", "stopping": "Run", "holding": "Hold:1",
+    "retracting": "Hold:1",
     "held": "Hold:0",
 }  # fmt: skip
 #: cause of a fault -> number of GRBL's alarm
