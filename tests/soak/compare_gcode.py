@@ -103,7 +103,7 @@ _STRICTER = (
     # bounds, and profiles of lathe cycles: see docs/reference/gcode.md
     "would peck more than", "may repeat a cycle at most", "would take more than", "an arc of more than",
     "cannot stand in the profile", " of its profile: ", "cannot stand beside G7", " cannot move ",
-    "more than 10000 passes",
+    "more than 10000 passes", "cannot stand behind an O-word",
 )  # fmt: skip
 _MINUS_ONE = re.compile(r"[a-z] *(?:-+ *1(?:\.0*)?(?![\d.])|\[)", re.IGNORECASE)
 
