@@ -254,7 +254,7 @@ class LiveAvr:
             self.session.order("span", span.payload)
         if self._state == "loading":
             held = self._maker.time(self._maker.at)
-            enough = held - self._executed >= FILLED or held >= self._queue.end - 1e-9
+            enough = held - self._executed >= FILLED or self._maker.at >= self._maker.tick(self._queue.end)
             if enough or self.session.room < largest:
                 self.session.order("go")
                 self._state = "running"
