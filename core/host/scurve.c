@@ -1,7 +1,6 @@
 /* The pass forward: as fast as it gets, always able to bring a to 0 below the ceiling and to join the pass back. */
 #include "host/scurve_march.h"
 
-static const double STILL = 1e-7; /* nearer to the ceiling than this part, an even speed is kept */
 static const double ALIKE = 1e-12;
 
 typedef struct {
@@ -149,7 +148,7 @@ static void advance(trochia_writer *w) {
     trochia_run run;
     trochia_arrest arrest;
     int joins, barrier;
-    if (w->a == 0.0 && w->v >= here->ceiling * (1.0 - STILL))
+    if (w->a == 0.0 && trochia_is_still(here, w->v))
         run = (trochia_run){.v = w->v, .rem = here->length};
     else
         trochia_climb(&ahead, w->at, w->v, w->a, &run);
@@ -163,8 +162,8 @@ static void advance(trochia_writer *w) {
     if (!joins) {
         for (int k = 0; k < run.count; k++)
             put_leg(w, &run.legs[k]);
-        w->v = run.v;
         w->a = run.a;
+        w->v = run.v;
         w->at++;
         return;
     }

@@ -12,7 +12,6 @@ static const double NEAR = 1e-12;         /* speeds that are the same */
 static const double ROUNDED = 1.0 + 1e-9; /* above a ceiling by what searches leave */
 enum { FARTHEST = 64 };                   /* stretches looked back over */
 static const double BELOW = 1.0 - 1e-5;
-static const double STILL = 1e-7; /* nearer to the ceiling than this part, an even speed is kept */
 
 /* Of a place passed at an even speed, by a lower one than planned: that of which the arrest back in time ends at v. */
 static trochia_leave slower_node(const trochia_course *course, int64_t b, double v) {
@@ -204,7 +203,7 @@ static void pass_stretch(trochia_course *course, int64_t b, trochia_mover *m) {
     trochia_run run;
     trochia_arrest arrest;
     int joins, barrier = 0;
-    if (m->closing || (m->a == 0.0 && m->v >= here->ceiling * (1.0 - STILL)))
+    if (m->closing || (m->a == 0.0 && trochia_is_still(here, m->v)))
         run = (trochia_run){.v = m->v, .a = m->a, .rem = here->length};
     else
         trochia_climb(&back, m->i, m->v, m->a, &run);

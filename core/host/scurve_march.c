@@ -8,7 +8,7 @@ static const double SUMMED = 1.0 + 1e-12;
 /* Forward a little less than back in time: then forward no ceiling is followed above what the pass back has. */
 static const double SLACK[2] = {1.0 + 1e-12, 1.0 + 1e-13};
 static const double ENDED = 1e-13;     /* less than this part of it is left of a: none is */
-static const double CLOSE = 1e-9;      /* nearer to the ceiling than this part, speed stays */
+static const double CLOSE = 1e-12;     /* nearer to the ceiling than this part, speed stays */
 static const double SHARE = 0.35;      /* of what v^2 is below the ceiling, taken at one go where budgets fall with v */
 static const double LITTLE_A = 0.75;   /* a budget that falls no lower until the ceiling is taken there at once */
 static const double LEAST_JERK = 1e-6; /* part of its jerk that turning must leave to an arrest */

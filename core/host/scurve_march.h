@@ -54,6 +54,11 @@ static inline double trochia_way_after(double v, double a, double j, double t) {
     return t * (v + t * (0.5 * a + t * j * (1.0 / 6.0)));
 }
 
+/* Nearer to the ceiling than this part, an even speed is kept: so near that where motion came from is forgotten. */
+static inline int trochia_is_still(const trochia_stretch *stretch, double v) {
+    return v >= stretch->ceiling * (1.0 - 1e-11);
+}
+
 /* A stretch that is passed at an even speed. */
 static inline int trochia_is_pinned(const trochia_stretch *stretch) {
     return stretch->kick_in > 0.0 || stretch->kick_out > 0.0;

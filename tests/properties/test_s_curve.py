@@ -101,8 +101,8 @@ def test_a_tolerance_hardly_costs_time(motion, name, data):
     program = data.draw(motion.programs(machine))
     blended = plan(build(program, machine, continuity=2), machine, program=program, profile="s-curve")
     exact = plan(build(program, machine, blend=False), machine, program=program, profile="s-curve")
-    # a tight corner is passed at an even speed, while a stop needs no time at that
-    assert blended.duration <= exact.duration * 1.06 + 0.03 * len(program.moves)
+    # corners are weighed one by one, as if those beside them were alike
+    assert blended.duration <= exact.duration * 1.04
 
 
 def test_a_sample_of_the_campaign_of_plans():
