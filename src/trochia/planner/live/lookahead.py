@@ -19,7 +19,7 @@ from trochia.planner.live.change import Ahead, change
 from trochia.planner.live.hold import hold
 from trochia.planner.live.portion import moved_on, states_at
 from trochia.planner.live.road import Place
-from trochia.planner.live.rows import joined
+from trochia.planner.live.rows import joined, put
 from trochia.planner.live.window import plan_window
 
 if TYPE_CHECKING:
@@ -81,6 +81,7 @@ class Lookahead:
         self._stop = rules.stopping_time
         self._span, self._window, self._rows = FIRST, WINDOW if window is None else window, rows
         self._end = self._reach(start.row, FIRST + SETTLE)
+        self._memory, self._at = np.empty(0, dtype=PHASE), 0  # what phases that are gone on with lie in, and where
         self.phases = self._from(start, t)
         self.safe = 0
         self._settle()
@@ -192,7 +193,7 @@ class Lookahead:
         most = self.safe_time - 4.0 * WARM * self._stop
         drop = _joint_before(self.phases, min(t, most), 0)
         if drop:
-            self.phases = self.phases[drop:]
+            self.phases, self._at = self.phases[drop:], self._at + drop
             self.safe -= drop
             self.road.trim(int(self.phases["segment"][0]))
         return drop or 0
@@ -284,9 +285,18 @@ class Lookahead:
             if k < len(new) and new["segment"][k] == here["segment"] and self._agree(here, new[k]):
                 rest = new[k:]
                 rest["t"] += here["t"] - rest["t"][0]
-                self.phases = joined([self.phases[:joint], rest])
+                self._go_on(joint, rest)
                 return True
         return False
+
+    def _go_on(self, count: int, rest: NDArray[Any]) -> None:
+        """Go on as ``rest`` behind the first ``count`` phases in hand, which are copied only now and then."""
+        if self.phases.base is not self._memory or self._at + count + len(rest) > len(self._memory):
+            self._memory, self._at = np.empty(2 * (count + len(rest)), dtype=PHASE), 0
+            put(self.phases[:count], self._memory[:count])
+        end = self._at + count + len(rest)
+        put(rest, self._memory[end - len(rest) : end])
+        self.phases = self._memory[self._at : end]
 
     def _agree(self, here: NDArray[Any], there: NDArray[Any]) -> bool:
         if there["s"] > _SAME_PLACE or abs(here["v"] - there["v"]) > _SAME_SPEED * (here["v"] + there["v"]):

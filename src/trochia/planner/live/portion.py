@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left, bisect_right
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -98,8 +99,9 @@ def states_at(phases: NDArray[Any], times: NDArray[np.float64]) -> NDArray[Any]:
 
 def between(phases: NDArray[Any], begin: float, end: float) -> NDArray[Any]:
     """Return the phases from one instant to another (k,); those under way then begin or end there."""
-    ends = phases["t"] + phases["duration"]
-    kept = phases[(ends > begin) & (phases["t"] < end)].copy()
+    first = max(bisect_right(phases["t"], begin) - 2, 0)  # one more, as ends are where the next begins but for rounding
+    near = phases[first : bisect_left(phases["t"], end)]
+    kept = near[near["t"] + near["duration"] > begin]  # a copy
     if len(kept):
         until = float(kept["t"][0] + kept["duration"][0])
         at = max(begin, float(kept["t"][0]))
