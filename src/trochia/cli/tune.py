@@ -12,7 +12,8 @@ from trochia.cli.tune_moves import move, move_options
 if TYPE_CHECKING:
     from trochia.analysis.tuning import Margins
 
-_AXIS_RULES = ("shaping", "optimise", "relay")  # the first two are those of `analysis.tuning.AXIS_RULES`
+_ONLY_AXIS = ("shaping", "optimise", "relay")  # the first two are those of `analysis.tuning.AXIS_RULES`
+_AXIS_RULES = (*_ONLY_AXIS, "bandwidth")
 _ULTIMATE_RULES = ("ziegler-nichols-closed", "ziegler-nichols-pi", "tyreus-luyben")  # `tuning.rules.ULTIMATE_RULES`
 _MODEL_RULES = ("simc", "ziegler-nichols", *_ULTIMATE_RULES, "bandwidth")
 
@@ -20,9 +21,7 @@ _MODEL_RULES = ("simc", "ziegler-nichols", *_ULTIMATE_RULES, "bandwidth")
 @click.command()
 @axis_options.machine
 @axis_options.joint
-@click.option(
-    "--rule", type=click.Choice(_AXIS_RULES + _MODEL_RULES), help="Without it shaping for a joint, else simc."
-)
+@click.option("--rule", type=click.Choice(_ONLY_AXIS + _MODEL_RULES), help="Without it shaping for a joint, else simc.")
 @click.option("--identify", "first", is_flag=True, help="Find the joint's model by experiment first, not by its file.")
 @click.option("--apply", is_flag=True, help="Write the loop into the machine's file; --undo takes it back.")
 @click.option("--undo", is_flag=True, help="Give the machine's file the loop that it had before the last --apply.")
@@ -51,22 +50,23 @@ def command(*, machine_name: str | None, joint: str | None, rule: str | None, pl
     if (size or time) and move_kind is None:
         raise click.UsageError("--size and --time are of a --move")
     if machine_name is None:
-        if rule in _AXIS_RULES or first or plot or apply or undo or move_kind:
+        if rule in _ONLY_AXIS or first or plot or apply or undo or move_kind:
             raise click.UsageError("shaping, the search, relay, experiments, moves, pictures and files are for a "
                                    "joint: give a machine with -m")  # fmt: skip
         _model(rule or ("bandwidth" if more["bandwidth"] else "simc"), more, as_json=as_json)
         return
-    if rule in _MODEL_RULES:
+    if rule in _MODEL_RULES and rule not in _AXIS_RULES:
         raise click.BadParameter(f"{rule} is for a model's numbers; a joint takes {', '.join(_AXIS_RULES)}",
                                  param_hint="--rule")  # fmt: skip
     if move_kind is not None and (rule or first or apply):
         raise click.UsageError("--move tunes nothing: it goes with -m, --joint, --size, --time and -o")
-    _machine(machine_name, joint, rule or "shaping", ms, plot, as_json=as_json, first=first, apply=apply, undo=undo,
+    wish = tune_joint.Asked(rule or "shaping", ms, more["bandwidth"], float(more["damping"]))
+    _machine(machine_name, joint, wish, plot, as_json=as_json, first=first, apply=apply, undo=undo,
              moved=None if move_kind is None else (move_kind, {"size": size, "time": time}))  # fmt: skip
 
 
 def _machine(
-    machine_name: str, joint: str | None, rule: str, ms: float, plot: str | None, *, as_json: bool, first: bool,
+    machine_name: str, joint: str | None, wish: tune_joint.Asked, plot: str | None, *, as_json: bool, first: bool,
     apply: bool, undo: bool, moved: tuple[str, dict[str, str | None]] | None,
 ) -> None:  # fmt: skip
     """Do what is asked of a machine's joint."""
@@ -77,7 +77,7 @@ def _machine(
     if moved is not None:
         move(asked, moved[0], moved[1], plot, as_json=as_json)
     else:
-        tune_joint.joint(asked, rule, ms, plot, first=first, apply=apply, as_json=as_json)
+        tune_joint.joint(asked, wish, plot, first=first, apply=apply, as_json=as_json)
 
 
 def _needed(model: dict[str, Any], *names: str) -> list[float]:

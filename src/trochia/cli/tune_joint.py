@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from trochia.analysis.tuning import Judged, Margins
     from trochia.machine.servo_plant import ServoPlant
-    from trochia.machine.servos import CascadeLoop, PidLoop
+    from trochia.machine.servos import CascadeLoop, PidLoop, PmacLoop
     from trochia.servo.axis import Loop
 
 _NAMES = {
@@ -29,20 +29,28 @@ DIGITS = 6  #: of a gain in a file
 _STEP, _COUNTS = 0.1, 20.0  # of the step by which loops are judged: radians, and counts, at least
 
 
+class Asked(NamedTuple):
+    """A rule, and what it is told: greatest sensitivity, bandwidth [Hz], damping ratio."""
+
+    rule: str
+    ms: float
+    bandwidth: float | None
+    damping: float
+
+
 class Found(NamedTuple):
     """Gains as a machine's file has them, and what was measured on the way."""
 
-    data: CascadeLoop | PidLoop
+    data: CascadeLoop | PidLoop | PmacLoop
     measured: dict[str, Any]
 
 
-def joint(asked: axis_options.AskedAxis, rule: str, ms: float, plot: str | None, *, first: bool, apply: bool,
+def joint(asked: axis_options.AskedAxis, wish: Asked, plot: str | None, *, first: bool, apply: bool,
           as_json: bool) -> None:  # fmt: skip
     """Tune a joint, tell before and after, and write what was asked for."""
     from dataclasses import replace  # noqa: PLC0415 - light --help
 
     from trochia.analysis.tuning import Moves, judge  # noqa: PLC0415
-    from trochia.servo.joint import loop_of  # noqa: PLC0415
     from trochia.servo.nominal import nominal_loop  # noqa: PLC0415
 
     path = _file_of(asked) if apply else None
@@ -53,9 +61,9 @@ def joint(asked: axis_options.AskedAxis, rule: str, ms: float, plot: str | None,
         found = run_experiment(asked, _progress(as_json=as_json))
         plant, uncertainty = found.plant, figures(found)["uncertainty"]
     moves = Moves(step=max(_STEP, _COUNTS / (asked.plant.counts or 1e9)), way=asked.speed / 6.0, time=0.5)
-    tuned = _relay(asked) if rule == "relay" else _shaped(asked, plant, rule, ms, moves.step)
+    tuned = _tuned(asked, plant, wish, moves.step)
     # judged as the file will have it: its digits, and the feed-forward of the joint's own data
-    after = judge(asked.plant, loop_of(replace(asked.drive, loop=tuned.data)), moves)
+    after = judge(asked.plant, nominal_loop(replace(asked.drive, loop=tuned.data)), moves)
     before = _before(asked, nominal_loop(asked.drive), moves)
     files: list[str] = []
     if plot is not None:
@@ -72,7 +80,7 @@ def joint(asked: axis_options.AskedAxis, rule: str, ms: float, plot: str | None,
             "files": files,
         })  # fmt: skip
         return
-    _show(asked, rule, tuned, after, before)
+    _show(asked, wish.rule, tuned, after, before)
     for file in files:
         click.echo(f"wrote {file}")
 
@@ -93,6 +101,19 @@ def undo(machine_name: str, *, as_json: bool) -> None:
 
 def _progress(*, as_json: bool) -> Callable[[str], None]:
     return lambda what: None if as_json else click.echo(f"  {what} …", err=True)
+
+
+def _tuned(asked: axis_options.AskedAxis, plant: ServoPlant, wish: Asked, size: float) -> Found:
+    """Return the gains of a rule."""
+    if wish.rule == "relay":
+        return _relay(asked)
+    if wish.rule == "bandwidth":
+        from trochia.analysis.tuning.commission import commissioned  # noqa: PLC0415 - light --help
+
+        if wish.bandwidth is None:
+            raise click.UsageError("this rule needs --bandwidth")
+        return Found(commissioned(asked.drive, plant, bandwidth=wish.bandwidth, damping=wish.damping), {})
+    return _shaped(asked, plant, wish.rule, wish.ms, size)
 
 
 def _shaped(asked: axis_options.AskedAxis, plant: ServoPlant, rule: str, ms: float, size: float) -> Found:
@@ -156,7 +177,7 @@ def _file_of(asked: axis_options.AskedAxis) -> Path:
     return path
 
 
-def _write(asked: axis_options.AskedAxis, path: Path, data: CascadeLoop | PidLoop) -> None:
+def _write(asked: axis_options.AskedAxis, path: Path, data: CascadeLoop | PidLoop | PmacLoop) -> None:
     from trochia.machine.loop_text import with_loop  # noqa: PLC0415 - light --help
     from trochia.machine.undo import change  # noqa: PLC0415
 
@@ -189,11 +210,13 @@ def _model_figures(plant: ServoPlant) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _gains(data: CascadeLoop | PidLoop) -> dict[str, Any]:
+def _gains(data: CascadeLoop | PidLoop | PmacLoop) -> dict[str, Any]:
     """Return the gains by the machine file's keys."""
+    from trochia.machine.servos import PmacLoop  # noqa: PLC0415 - light --help
+
     names = [name for name in data.__slots__ if name not in {"notch", "period", "limit", "low_pass"}]
     given: dict[str, Any] = {"kind": data.kind} | {name: getattr(data, name) for name in names}
-    notch = data.notch
+    notch = None if isinstance(data, PmacLoop) else data.notch
     given["notch"] = None if notch is None else {"frequency_Hz": notch.frequency, "width": notch.width,
                                                  "depth": notch.depth}  # fmt: skip
     return given
