@@ -127,9 +127,9 @@ def test_a_step_that_lies_between_two_of_the_other_motors(talk: Callable[[str], 
     told.switch(enable=1)
     told.events()
     told.begin()
-    told.spans({0: (2500, 300), 1: (2600, 280)}, outputs=bits([1, 1]))
+    told.spans({0: (1600, 300), 1: (1700, 280)}, outputs=bits([1, 1]))
     assert told.go(0.1)["position"][:2].tolist() == [300, 280]
-    slots = {2500 * (k + 1) // 128 for k in range(300)} | {2600 * (k + 1) // 128 for k in range(280)}
+    slots = {1600 * (k + 1) // 128 for k in range(300)} | {1700 * (k + 1) // 128 for k in range(280)}
     wanted = [128 * slot for slot in sorted(slots)]  # steps of one slot are one byte
     at = np.array([cycle for cycle, _ in register.feed(told.events()).latched])
     assert len(at) == len(wanted)

@@ -59,7 +59,7 @@ BOARDS = {
         ),
         Board(
             name="uno-l293d", mcu="atmega328p", programmer="arduino", motors=2,
-            inputs=("C0", "C1", "C2", "C3", "C4", "C5"), outputs=("B1", "D2"), closest=2500, coils=True,
+            inputs=("C0", "C1", "C2", "C3", "C4", "C5"), outputs=("B1", "D2"), closest=1600, coils=True,
         ),
     )
 }  # fmt: skip
