@@ -119,8 +119,13 @@ int64_t trochia_timeline_pulses(trochia_timeline *line, const uint8_t *spans, in
         hold(&r);
     while (told != TROCHIA_ENDED && told != TROCHIA_CROWDED) {
         line->brake = brake > 0 && r.slices >= brake;
+        uint8_t head = line->head;
         told = trochia_timeline_fill(line);
+        if (told == TROCHIA_FULL && line->head != head)
+            continue; /* it was not full yet: only a turn was over */
         r.slices += told == TROCHIA_SLICED;
+        if (told == TROCHIA_SLICED)
+            continue;
         int took = told == TROCHIA_NEED ? take_up(&r) : 1;
         if (took < 0)
             return -1;

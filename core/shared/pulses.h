@@ -49,11 +49,12 @@ enum trochia_far { TROCHIA_LONG = 1L << 22 /* no two steps so far apart are in o
 enum trochia_timeline_bounds {
     TROCHIA_LONGEST_RUN = 100,
     TROCHIA_AHEAD = 3,
-    TROCHIA_SLOT = 128, /* ticks */
-    TROCHIA_CHUNK = 64, /* slots that are filled at once */
-    TROCHIA_SPARE = 4,  /* more, for steps that found theirs taken where a span ends */
-    TROCHIA_APART = 64, /* ticks between pulses, at least, and from a change of direction to a pulse */
-    TROCHIA_SPECIAL = 0 /* from or to other entries that are no pulses */
+    TROCHIA_SLOT = 128,  /* ticks */
+    TROCHIA_CHUNK = 64,  /* slots that are filled at once */
+    TROCHIA_SPARE = 4,   /* more, for steps that found theirs taken where a span ends */
+    TROCHIA_BEHIND = 16, /* slots by which steps may be late */
+    TROCHIA_APART = 64,  /* ticks between pulses, at least, and from a change of direction to a pulse */
+    TROCHIA_SPECIAL = 0  /* from or to other entries that are no pulses */
 };
 
 typedef struct trochia_motor {
@@ -137,7 +138,7 @@ static inline uint16_t trochia_timeline_delta(trochia_timeline *line, uint16_t r
     if ((int16_t)(delta - gap) < 0)
         delta = gap;
     line->last = (uint16_t)(line->last + delta);
-    line->apart = TROCHIA_SPECIAL;
+    line->apart = (uint8_t)(delta < line->apart ? line->apart - delta : 0);
     return delta;
 }
 
@@ -211,7 +212,7 @@ static inline uint8_t trochia_motor_runs(const trochia_timeline *line, const tro
 static inline void trochia_timeline_alone(trochia_timeline *line, trochia_motor *motor, int32_t limit) {
     while (motor->on && motor->due < limit && trochia_timeline_space(line) >= 12) {
         trochia_segment_run *run = &motor->run;
-        uint32_t due = motor->due < 0 ? 0 : (uint32_t)motor->due, real = trochia_real_fine(line, due);
+        uint32_t due = (uint32_t)motor->due, real = trochia_real_fine(line, due);
         uint32_t interval = run->interval;
         uint8_t count = run->phase < TROCHIA_LONGEST_RUN ? run->phase : TROCHIA_LONGEST_RUN;
         if (interval >= (uint32_t)TROCHIA_LONG)
@@ -284,12 +285,9 @@ static inline uint8_t trochia_row_place(trochia_timeline *line, trochia_row *row
 
 /* Where the next step of a motor is in real time, and how far apart its steps are; returns whether that is the same. */
 static inline uint8_t trochia_row_scale(const trochia_timeline *line, const trochia_motor *motor, trochia_row *row) {
-    uint32_t due = (uint32_t)motor->due;
-    row->real = due;
+    row->real = (uint32_t)motor->due;
     row->interval = motor->run.interval;
-    if (motor->due < 0)
-        row->real = 0;
-    else if (line->full)
+    if (line->full)
         return row->interval < (uint32_t)TROCHIA_LONG;
     row->real = trochia_real_fine(line, row->real);
     row->interval = trochia_real_fine(line, row->interval);
@@ -325,12 +323,15 @@ static inline uint8_t trochia_timeline_chunk(trochia_timeline *line, int32_t fir
     if (trochia_timeline_space(line) < TROCHIA_CHUNK + TROCHIA_SPARE + 24)
         return 0;
     uint8_t start = (uint8_t)((uint16_t)(line->last + line->apart + HALF - 1) / TROCHIA_SLOT);
-    uint16_t early = first < 0 ? 0u : (uint16_t)(first >> 8);
-    uint8_t slot = (uint8_t)(trochia_real(line, early) / TROCHIA_SLOT);
+    uint8_t slot = (uint8_t)(trochia_real(line, (uint16_t)(first >> 8)) / TROCHIA_SLOT);
     if (slot > start)
         start = slot;
     uint16_t end = trochia_real(line, limit);
     uint8_t stop = (uint8_t)((uint16_t)(end + TROCHIA_SLOT - 1) / TROCHIA_SLOT), last = 1;
+    if (start > stop + TROCHIA_BEHIND)
+        line->crowded = 1;
+    if (line->crowded)
+        return 0;
     if (stop < start)
         stop = start;
     if ((uint8_t)(stop - start) > TROCHIA_CHUNK) {

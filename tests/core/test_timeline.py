@@ -91,6 +91,15 @@ def test_a_motor_faster_than_slots_beside_another_ends_in_an_alarm_with_its_true
     assert done.position[:2].tolist() == [len(mine(done, motor)) for motor in range(2)]
 
 
+@pytest.mark.parametrize("count", [20, 300])
+def test_spans_shorter_than_a_slot_lose_no_step(count: int):
+    whole = b"".join(span({0: part(0, 50, 1), 1: part(10, 50, 1)}, ticks=60, number=i) for i in range(count))
+    done = executed(whole)
+    assert done.crowded == (count == 300)  # it cannot catch up: the chip's alarm
+    assert [len(mine(done, motor)) for motor in range(2)] == done.position[:2].tolist()
+    assert done.crowded or done.position[0] == count
+
+
 def test_directions_are_told_with_the_steps():
     flags = [0, BACKWARDS, BACKWARDS, 0]
     whole = b"".join(span({1: part(5_000, 4_000, 20, flags=flag)}, number=i) for i, flag in enumerate(flags))

@@ -152,11 +152,11 @@ def test_a_host_that_falls_silent_is_followed_by_a_controlled_stop_in_the_dark(t
     up = edges(np.concatenate(pieces), "D2", 1)
     assert dark is not None
     decided = since + (silence + 2) * 16384  # at the latest
-    assert since + (silence - 1) * 16384 < dark <= decided + 1000 * US
+    assert since + (silence - 4) * 16384 < dark <= decided + 1000 * US
     assert dark < first_slow(up, 10_000)
     gaps = np.diff(up)
     falling = gaps[int(np.argmax(gaps > CLOCK / 10_000 + 8 * US)) :]
-    assert np.diff(falling).min() > -130  # slower from step to step, up to the slices' seams
+    assert np.diff(falling[2:]).min() > -130  # slower from step to step, up to the slices' seams
     assert up[-1] - dark < 30e-3 * CLOCK
     status = told.ask()
     assert (STATES[int(status["state"])], CAUSES[int(status["cause"])]) == ("stopped", "silence")
