@@ -46,17 +46,15 @@ folder = click.Path(path_type=Path)
               help='Fail (exit code 1) where OTHER leaves the way of FOLDER by more, like "10 um".')  # fmt: skip
 @click.option("--csv", type=click.Path(dir_okay=False, path_type=Path), metavar="FILE",
               help="Write the samples as CSV; of two, those of OTHER.")  # fmt: skip
-@click.option("--picture", type=click.Path(dir_okay=False, path_type=Path), metavar="FILE",
-              help="Draw it over time, as PNG; of two, how far they are apart.")  # fmt: skip
 @click.option("--contouring", is_flag=True,
               help="Of one: how well it was followed: spikes, spectra, repeatability, resolution, circle.")  # fmt: skip
 @click.option("-o", "--plot", type=click.Path(dir_okay=False), metavar="FILE.png|FILE.svg|FILE.html",
-              help="Draw that.")  # fmt: skip
+              help="Draw it over time; of two, how far they are apart; with --contouring what that tells.")  # fmt: skip
 @click.option("--verify", is_flag=True, help="Read every sample and hold it against the checksum.")
 @as_json
 def command(
     *, recording: Path, other: Path | None, align: str, tolerance: float | None, csv: Path | None,
-    picture: Path | None, contouring: bool, plot: str | None, verify: bool, as_json: bool,
+    contouring: bool, plot: str | None, verify: bool, as_json: bool,
 ) -> None:  # fmt: skip
     """Look at a recording; with OTHER, tell how far that is from it: channel by channel, when, at which line.
 
@@ -70,10 +68,8 @@ def command(
     """
     if tolerance is not None and other is None:
         raise click.UsageError("--tolerance holds OTHER against FOLDER: give both")
-    if contouring and (other is not None or picture is not None):
-        raise click.UsageError("--contouring is of one recording, and its picture by -o")
-    if plot is not None and not contouring:
-        raise click.UsageError("-o draws what --contouring tells")
+    if contouring and other is not None:
+        raise click.UsageError("--contouring is of one recording")
     from trochia.recorder import read, to_csv  # noqa: PLC0415 - `trochia --help` must stay light
 
     one = read(recording, verify=verify)
@@ -84,21 +80,30 @@ def command(
         _study(one, plot, as_json=as_json)
         return
     if second is None:
-        _single(one, picture, as_json=as_json)
+        _single(one, plot, as_json=as_json)
         return
-    good = _both(one, second, align, tolerance, picture, as_json=as_json)
+    good = _both(one, second, align, tolerance, plot, as_json=as_json)
     sys.exit(0 if good else 1)
 
 
-def _single(one: Recording, picture: Path | None, *, as_json: bool) -> None:
+def _draw(plot: str, one: Recording, other: Recording | None, rows: list[tuple[str, str]]) -> None:
+    """Draw a recording, or how far another is from it."""
+    from trochia.analysis.replay.picture import picture  # noqa: PLC0415
+    from trochia.cli.axis_options import write_plot  # noqa: PLC0415
+
+    what = f"{one.machine}, {Path(one.program).name or 'unnamed'}"
+    title = what if other is None else f"{what}: what the second does otherwise than the first"
+    write_plot(plot, title, lambda form: picture(one, other, form=form), rows)
+
+
+def _single(one: Recording, plot: str | None, *, as_json: bool) -> None:
     """Show one recording."""
     from trochia.analysis.replay import look  # noqa: PLC0415
 
     seen = look(one)
-    if picture is not None:
-        from trochia.analysis.replay.picture import picture as draw  # noqa: PLC0415
-
-        draw(picture, one)
+    if plot is not None:
+        _draw(plot, one, None, [(c["name"], f"{_number(c['least'])} to {_number(c['greatest'])} {c['unit']}")
+                                for c in seen.channels if c["name"] != "state"])  # fmt: skip
     print_json(seen.figures()) if as_json else _show(seen)
 
 
@@ -139,7 +144,7 @@ def _show(seen: Look) -> None:
 
 
 def _both(
-    one: Recording, second: Recording, align: str, tolerance: float | None, picture: Path | None, *, as_json: bool
+    one: Recording, second: Recording, align: str, tolerance: float | None, plot: str | None, *, as_json: bool
 ) -> bool:
     """Hold one against the other; return whether it is within the tolerance."""
     from trochia.analysis.replay import aligned, hold_against  # noqa: PLC0415
@@ -147,10 +152,9 @@ def _both(
     pair = aligned(one, second, by=align)
     held = hold_against(pair, (one, second))
     beyond = [] if tolerance is None else held.beyond(tolerance)
-    if picture is not None:
-        from trochia.analysis.replay.picture import picture as draw  # noqa: PLC0415
-
-        draw(picture, pair.a, pair.b)
+    if plot is not None:
+        _draw(plot, pair.a, pair.b, [(name, f"{_number(each.peak)} {each.unit} at most, {_number(each.rms)} rms")
+                                     for name, each in held.deviations.items()])  # fmt: skip
     if as_json:
         print_json({
             "ok": not beyond, "seconds": held.seconds, "began_s": held.began, "missing": held.missing,

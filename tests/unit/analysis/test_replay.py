@@ -125,7 +125,7 @@ def test_a_run_is_its_plan(call, tmp_path):
     ran = call("run", program, "-m", "laser", "--virtual", "-y", "--record", tmp_path / "run")
     assert ran.exit_code == 0
     assert "recording" in ran.output
-    done = call("replay", tmp_path / "out" / "recording", tmp_path / "run", "--tolerance", "1 um", "--picture",
+    done = call("replay", tmp_path / "out" / "recording", tmp_path / "run", "--tolerance", "1 um", "-o",
                 tmp_path / "p.png", "--csv", tmp_path / "run.csv", "--json")  # fmt: skip
     assert done.exit_code == 0
     told = json.loads(done.output)
@@ -140,7 +140,7 @@ def test_a_run_is_its_plan(call, tmp_path):
     failed = call("replay", tmp_path / "run", tmp_path / "other", "--tolerance", "10 um")
     assert failed.exit_code == 1
     assert "beyond 10 µm: path" in failed.output
-    seen = call("replay", tmp_path / "run", "--picture", tmp_path / "one.png")
+    seen = call("replay", tmp_path / "run", "-o", tmp_path / "one.png")
     assert seen.exit_code == 0
     assert "states   idle" in seen.output
 

@@ -1,4 +1,4 @@
-"""The picture of a recording, or of two on one clock.  Out: a PNG file."""
+"""The picture of a recording, or of two on one clock.  Out: the bytes of a PNG or SVG."""
 
 from __future__ import annotations
 
@@ -7,11 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trochia.files import write_whole
-
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from numpy.typing import NDArray
 
     from trochia.recorder import Recording
@@ -20,8 +16,8 @@ _MOST = 4000  #: points drawn of a line: the least and the greatest of each of h
 _COLOURS = ("#1f6fb2", "#c2410c", "#2f855a", "#6b46c1", "#8a97a3", "#b7791f")
 
 
-def picture(path: Path, one: Recording, other: Recording | None = None) -> None:
-    """Write what axes, speed and errors did over time; with another on the same clock, how far that is from it."""
+def picture(one: Recording, other: Recording | None = None, *, form: str = "png") -> bytes:
+    """Return what axes, speed and errors did over time; with another on the same clock, how far that is from it."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg  # noqa: PLC0415 - heavy, asked for only
     from matplotlib.figure import Figure  # noqa: PLC0415
 
@@ -40,8 +36,8 @@ def picture(path: Path, one: Recording, other: Recording | None = None) -> None:
     what = f"{one.machine}, {one.program}" if one.program else one.machine
     sheet.suptitle(what if other is None else f"{what}: what the second does otherwise than the first", fontsize=11)
     out = io.BytesIO()
-    sheet.savefig(out, format="png")
-    write_whole(path, out.getvalue())
+    sheet.savefig(out, format=form, metadata={"Date": None} if form == "svg" else None)
+    return out.getvalue()
 
 
 def _rows(one: Recording, other: Recording | None) -> list[tuple[str, float, list[tuple[str, Any, Any]]]]:

@@ -109,7 +109,7 @@ def test_what_cannot_be_studied_is_named(tmp_path: Path) -> None:
     with pytest.raises(LimitError, match="no axis in this recording"):
         study(recording(X__commanded=np.zeros(100)))
     save(tmp_path / "run", recording(X__commanded=np.zeros(20), X__actual=np.zeros(20)))
-    for words, what in ((["-o", "x.png"], "--contouring"), (["--contouring", "--picture", "x.png"], "by -o")):
-        result = CliRunner().invoke(replay.command, [str(tmp_path / "run"), *words])
-        assert result.exit_code == 2
-        assert what in result.output
+    run = str(tmp_path / "run")
+    result = CliRunner().invoke(replay.command, [run, run, "--contouring"])
+    assert result.exit_code == 2
+    assert "of one recording" in result.output
