@@ -15,6 +15,7 @@ static const double LEAST_JERK = 1e-6; /* part of its jerk that turning must lea
 /* An arrest that is too fast by less is followed to its end: by rounding of one that is not. */
 static const double GRAZED = 1e-9;
 static const double CLOSE_TIME = 1e-5;
+static const double LOWER = 0.035; /* the same, where that leaves less than the a there is */
 enum { STEPS = 7 };
 
 static double place(const trochia_track *track, int64_t i, double rem) {
@@ -223,8 +224,12 @@ void trochia_climb(const trochia_track *track, int64_t i, double v, double a, tr
     run->time = 0.0;
     run->count = 0;
     for (int k = 0; k < STEPS && run->rem > 0.0 && run->v < stretch->ceiling * (1.0 - CLOSE); k++)
-        if (!climb_to(track, i, run, next_high(stretch, run->v)))
-            break;
+        if (!climb_to(track, i, run, next_high(stretch, run->v))) {
+            /* more a than the speed ahead leaves: first by the budget of a lower one */
+            double rise = stretch->ceiling * stretch->ceiling - run->v * run->v;
+            if (run->count || !(run->a > 0.0) || !climb_to(track, i, run, sqrt(run->v * run->v + LOWER * rise)))
+                break;
+        }
 }
 
 void trochia_run_at(const trochia_track *track, int64_t i, const trochia_run *run, double time, trochia_run *out) {
