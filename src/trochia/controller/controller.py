@@ -344,7 +344,8 @@ class Controller:
             self.enter(target)
             (probe if event is Event.PROBE else go_on)(self, activity)
             return
-        if activity is not None and event in {Event.STILL, Event.PAUSED} and self.state is not State.HOLDING:
+        on_the_way = self.state in {State.HOLDING, State.REVERSING}
+        if activity is not None and event in {Event.STILL, Event.PAUSED} and not on_the_way:
             self.pending.append(activity.finish(whole=self.state is not State.STOPPING))
         if event is Event.PAUSED and isinstance(activity, Job):
             ask_for(self, activity)

@@ -136,6 +136,15 @@ def resume(it: Controller, _command: c.Resume, _now: float) -> str:
     return ""
 
 
+def reverse(it: Controller, command: c.Reverse, _now: float) -> str:
+    """Go back along the path."""
+    if it.away is not None or it.hook or not isinstance(it.activity, Job):
+        raise LocalProtocolError("the tool is not on the path" if it.away else "no job is held here", hint="Resume it.")
+    it.panel.check_safe(it)
+    it.activity.reverse(it.report, command.way)
+    return ""
+
+
 def answer(it: Controller, command: c.Answer, now: float) -> str:
     """Answer the machine's question; yes goes on."""
     if it.request is None or it.request.number != command.request:
@@ -318,8 +327,7 @@ def _jog(
 HANDLERS: dict[type[c.Command], Handler] = {
     c.Enable: enable, c.Disable: disable, c.EmergencyStop: estop, c.Reset: reset, c.Acknowledge: acknowledge,
     c.Load: load, c.Unload: unload, c.Run: run, c.RunFrom: run_from, c.Hold: hold, c.Resume: resume, c.Step: step,
-    c.Abort: abort, c.Switches: switches, c.Override: override, c.Mdi: mdi, c.Jog: jog, c.JogStop: jog_stop,
-    c.JogBy: jog_by, c.JogTo: jog_to, c.Home: home, c.WorkZero: work_zero, c.SetOutput: set_output,
-    c.SetInput: set_input,
-    c.ArmBeam: arm_beam, c.Answer: answer,
+    c.Reverse: reverse, c.Abort: abort, c.Switches: switches, c.Override: override, c.Mdi: mdi, c.Jog: jog,
+    c.JogStop: jog_stop, c.JogBy: jog_by, c.JogTo: jog_to, c.Home: home, c.WorkZero: work_zero,
+    c.SetOutput: set_output, c.SetInput: set_input, c.ArmBeam: arm_beam, c.Answer: answer,
 }  # fmt: skip

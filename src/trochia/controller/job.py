@@ -17,6 +17,7 @@ from trochia.controller.awaited import Awaited
 from trochia.controller.doings import Doings
 from trochia.controller.feeder import ROW, Feeder
 from trochia.controller.states import Event
+from trochia.errors import LocalProtocolError
 from trochia.planner.live import LivePlan
 from trochia.program import Action, Pause, Probe, ToolChange, UserCode, WaitInput
 
@@ -174,6 +175,21 @@ class Job:
         back = self.feeder.live.resume(now, relight=self._machine.beam is not None and not self.options.dark)
         self.feeder.sent, self.feeder.lit_from, self.feeder.dark_until = now, back, back + ROW
         return back
+
+    def reverse(self, report: Report, way: float) -> None:
+        """Go back along the path by a way [mm], dark, at most to where the program switched something last.
+
+        Raises
+        ------
+        LocalProtocolError
+            When the program waits, instead of being held.
+        """
+        if self.waiting is not None or not self.feeder.live.held:
+            raise LocalProtocolError("the program waits here, it is not held", hint="Resume it, hold it, reverse.")
+        now = max(self.feeder.plan_time(report.executed), self.feeder.end)
+        switched = self._actions[self._next - 1].at if self._next else 0
+        self.feeder.live.back_up(now, way, earliest=int(np.searchsorted(self._moves, switched)))
+        self.feeder.sent, self.feeder.lit_from, self.feeder.dark_until = now, np.inf, np.inf
 
     def override(self, report: Report, latency: float, *, feed: float, rapid: float) -> None:
         """Change the overrides as soon as an order can act."""

@@ -24,6 +24,7 @@ class State(Enum):
     HOLDING = "holding"  # braking along the path
     RETRACTING = "retracting"  # taking the tool away from the part, after a hold for a door
     HELD = "held"  # at rest in a job: held, paused by the program, or waiting for its operator
+    REVERSING = "reversing"  # back along the path, beam off
     RESUMING = "resuming"  # back to where the beam went out, then on
     STEPPING = "stepping"  # running to the end of one block
     PROBING = "probing"
@@ -49,7 +50,7 @@ class Event(Enum):
 #: states in which motion is under way
 MOVING = frozenset({
     State.HOMING, State.JOGGING, State.RUNNING, State.HOLDING, State.RESUMING, State.STEPPING, State.PROBING,
-    State.STOPPING, State.RETRACTING,
+    State.STOPPING, State.RETRACTING, State.REVERSING,
 })  # fmt: skip
 
 #: commands that are taken in every state and change none
@@ -78,6 +79,9 @@ _JOBS = {
     (State.HOLDING, Event.AWAY): State.RETRACTING,
     (State.RETRACTING, Event.STILL): State.HELD,
     (State.HELD, "resume"): State.RESUMING,
+    (State.HELD, "reverse"): State.REVERSING,
+    (State.REVERSING, "hold"): State.HOLDING,
+    (State.REVERSING, Event.STILL): State.HELD,
     (State.HELD, "step"): State.STEPPING,
     (State.HELD, "abort"): State.IDLE,
     (State.RESUMING, "hold"): State.HOLDING,

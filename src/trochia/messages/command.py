@@ -75,6 +75,12 @@ class Resume(Command, frozen=True, kw_only=True, tag="resume"):
     """Go on after a hold, a pause of the program, or a tool change."""
 
 
+class Reverse(Command, frozen=True, kw_only=True, tag="reverse"):
+    """Go back along the path from a hold, beam off, and stay there; a resume goes on from there."""
+
+    way: Annotated[float, Meta(ge=0.0)]  # along the path [mm]
+
+
 class Step(Command, frozen=True, kw_only=True, tag="step"):
     """Run one block of the program and hold at its end."""
 
@@ -201,9 +207,9 @@ class Answer(Command, frozen=True, kw_only=True, tag="answer"):
 
 
 AnyCommand = (
-    Enable | Disable | EmergencyStop | Reset | Acknowledge | Load | Unload | Run | RunFrom | Hold | Resume | Step
-    | Abort | Switches | Override | Mdi | Jog | JogStop | JogBy | JogTo | Home | WorkZero | SetOutput | ArmBeam | Record
-    | RecordStop | SetInput | Answer
+    Enable | Disable | EmergencyStop | Reset | Acknowledge | Load | Unload | Run | RunFrom | Hold | Resume | Reverse
+    | Step | Abort | Switches | Override | Mdi | Jog | JogStop | JogBy | JogTo | Home | WorkZero | SetOutput | ArmBeam
+    | Record | RecordStop | SetInput | Answer
 )  # fmt: skip
 
 

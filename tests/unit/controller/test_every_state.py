@@ -62,6 +62,7 @@ COMMANDS = st.one_of(
             c.Hold(),
             c.Resume(),
             c.Resume(),
+            c.Reverse(way=4.0),
             c.Step(),
             c.Abort(),
             c.JogStop(),

@@ -18,7 +18,7 @@ def test_every_command_is_told_apart_by_its_kind(kind: type[command.Command]) ->
         "Load": {"name": "a.ngc", "text": "M2"}, "RunFrom": {"line": 3}, "Mdi": {"text": "G0 X1"},
         "Jog": {"axis": "X", "speed": -2.0}, "JogBy": {"way": {"X": 1.0}}, "JogTo": {"position": {"Z": 0.0}},
         "WorkZero": {"axes": {"X": 0.0}}, "SetOutput": {"name": "lamp", "value": 1.0}, "ArmBeam": {"on": True},
-            "SetInput": {"name": "door", "value": 1.0},
+        "SetInput": {"name": "door", "value": 1.0}, "Reverse": {"way": 4.0},
         "Answer": {"request": 4},
     }.get(kind.__name__, {})  # fmt: skip
     sent = kind(id=7, **given)

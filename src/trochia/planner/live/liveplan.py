@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trochia.errors import PlanningError
-from trochia.planner.live.back import forward_of, run_up, way_back
+from trochia.planner.live.back import behind, forward_of, run_up, way_back
 from trochia.planner.live.lookahead import Lookahead
 from trochia.planner.live.paving import pave
 from trochia.planner.live.portion import Portion, between
@@ -69,6 +69,7 @@ class _Leg:
     dark_to: Place | None = None  # the beam is lit from there on,
     dark_from: float = np.inf  # and until then
     back_to: Place | None = None  # of a leg back: where it leads
+    stays: bool = False  # of a leg back: motion rests at its end
 
     def dark(self, state: NDArray[Any]) -> bool:
         """Whether the beam is off at a state on the leg's own road."""
@@ -125,8 +126,8 @@ class LivePlan:
 
     @property
     def held(self) -> bool:
-        """Whether the last that was told is a hold."""
-        return self._legs[-1].ahead.stopped
+        """Whether what was told last ends at rest on the way: a hold, or going back."""
+        return self._legs[-1].ahead.stopped or self._legs[-1].stays
 
     def hold(self, t: float) -> float:
         """Brake along the path from ``t`` on, as soon as can be; return when motion rests [s].
@@ -153,15 +154,14 @@ class LivePlan:
         PlanningError
             When motion is not held, or does not rest yet.
         """
-        leg = self._legs[-1]
-        if not leg.ahead.stopped or t < leg.ahead.end_time:
-            raise PlanningError("only a motion that rests in a hold is resumed", hint="Hold it, and wait for its rest.")
-        place = leg.ahead.place_of_end()
+        leg, place = self._legs[-1], self._resting(t)
         if leg.back_to is None and self._road.ended and place.row >= self._road.end:
             leg.ahead.stopped = False  # nothing is left to go on with
             return t
+        if leg.stays:
+            self._legs.append(_Leg(t, Lookahead(self._road, self._rules, place, t, self.speeds, rested=True), place))
+            return t
         if leg.back_to is not None:
-            place = forward_of(leg.start, leg.ahead.road, place, leg.back_to)
             return self._again(place, leg.back_to, leg.dark_to or place, t)
         out = leg.ahead.state(leg.dark_from)
         if not relight or not (out["v"] > 0.0 or leg.dark_to):
@@ -171,6 +171,37 @@ class LivePlan:
         if leg.dark_to is not None and place_out < leg.dark_to:
             return self._again(place, leg.start, leg.dark_to, t)
         return self._again(place, run_up(leg.ahead, leg.dark_from, self.speeds), place_out, t)
+
+    def back_up(self, t: float, way: float, *, earliest: int = 0) -> float:
+        """Go back along the path from ``t``, at which motion rests, and stay there; return when it rests again [s].
+
+        It goes back by ``way`` [mm], to the beginning of segment ``earliest`` at most, dark.  A resume goes on from
+        there.
+
+        Raises
+        ------
+        PlanningError
+            When motion is not held, or does not rest yet.
+        """
+        place = self._resting(t)
+        end = max(behind(self._road, place, way), Place(earliest, 0.0))
+        back = way_back(self._road, place, end) if end < place else None
+        if back is None:
+            return t
+        ahead = Lookahead(back, self._rules, Place(0, 0.0), t, Speeds())
+        ahead.reach(np.inf)
+        self._legs.append(_Leg(t, ahead, place, back_to=end, stays=True))
+        return ahead.end_time
+
+    def _resting(self, t: float) -> Place:
+        """Return where on the program's road motion rests at ``t``, in a hold."""
+        leg = self._legs[-1]
+        if not self.held or t < leg.ahead.end_time:
+            raise PlanningError(
+                "only a motion that rests in a hold goes on, or back", hint="Hold it, and wait for its rest."
+            )
+        place = leg.ahead.place_of_end()
+        return place if leg.back_to is None else forward_of(leg.start, leg.ahead.road, place, leg.back_to)
 
     def _again(self, place: Place, start: Place, dark_to: Place, t: float) -> float:
         """Back up from a place to ``start``, and go on from there, dark to ``dark_to``; return when that is passed."""
