@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+HAIR = 1e-8  #: as long as times that are the same may be apart [s]
 _POWERS = np.arange(4)
 
 
@@ -96,11 +97,14 @@ class Segments:
         )  # fmt: skip
 
     def until(self, time: float) -> Segments:
-        """Return what lies before a time after its start [s], the last row cut."""
+        """Return what lies before a time after its start [s], the last row cut.
+
+        A last row that ends earlier by rounding is stretched to end there: in an hour such differences would add up.
+        """
         ends = np.cumsum(self.duration)
-        count = int(np.searchsorted(ends, time, side="left")) + 1
-        if count > len(self):
+        if time > ends[-1] + HAIR:
             return self
+        count = min(int(np.searchsorted(ends, time, side="left")) + 1, len(self))
         cut = self.rows(slice(0, count))
         duration = cut.duration.copy()
         duration[-1] = time - (ends[count - 2] if count > 1 else 0.0)
