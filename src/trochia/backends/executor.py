@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from trochia.backends.queue import SAME_TIME, Queue
+from trochia.backends.queue import Queue
+from trochia.backends.segments import SAME_TIME
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from trochia.backends.segments import Segments, joined, nothing
+from trochia.backends.segments import SAME_TIME, Segments, joined, nothing
 from trochia.errors import LocalProtocolError
 
 if TYPE_CHECKING:
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 
 JOINS = 1e-6  #: greatest step between what is held and what is added [mm or degree]
 AT_REST = 1e-9  #: of a velocity that is as good as none [mm/s or degree/s]
-SAME_TIME = 1e-9  #: [s]
 
 
 class Sample(NamedTuple):

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-HAIR = 1e-8  #: as long as times that are the same may be apart [s]
+SAME_TIME = 1e-9  #: how far times that are the same may be apart [s]
 _POWERS = np.arange(4)
 
 
@@ -102,7 +102,7 @@ class Segments:
         A last row that ends earlier by rounding is stretched to end there: in an hour such differences would add up.
         """
         ends = np.cumsum(self.duration)
-        if time > ends[-1] + HAIR:
+        if time > ends[-1] + SAME_TIME:
             return self
         count = min(int(np.searchsorted(ends, time, side="left")) + 1, len(self))
         cut = self.rows(slice(0, count))

@@ -88,18 +88,23 @@ def command(
         tell_recorded(take, runtime.recorder.failed, quiet=as_json)
     if reading.on_end is not None:
         reading.on_end(runtime.controller.work)  # what the run left, which only the machine knows
-    status = session.status
     if as_json:
-        options.print_json({"ok": not status.alarms, "state": status.state, "time_s": session.took,
-                            "alarms": [alarm.message for alarm in status.alarms],
-                            "host": None if figures is None else figures.told(),
-                            "recording": None if take is None else str(take.path),
-                            "logs": [str(path) for path in logs]})  # fmt: skip
+        _print(session, figures, take, logs)
     else:
         click.echo("".join(f"log      {path}\n" for path in logs), nl=False)
         if figures is not None:
             click.echo(figures.sentence())
-    sys.exit(1 if status.alarms else 0)
+    sys.exit(1 if session.status.alarms else 0)
+
+
+def _print(session: _Session, figures: Figures | None, take: Take | None, logs: list[Path]) -> None:
+    """Print what a run came to as one JSON object."""
+    status = session.status
+    options.print_json({"ok": not status.alarms, "state": status.state, "time_s": session.took,
+                        "alarms": [alarm.message for alarm in status.alarms],
+                        "host": None if figures is None else figures.told(),
+                        "recording": None if take is None else str(take.path),
+                        "logs": [str(path) for path in logs]})  # fmt: skip
 
 
 class _Session:
