@@ -113,6 +113,7 @@ typedef struct {
     uint8_t reserved[2];
 } trochia_hello;
 
+/* The schema comes first in every version. */
 typedef struct {
     uint32_t schema;
     uint32_t clock;  /* ticks a second */
@@ -123,6 +124,9 @@ typedef struct {
     uint8_t outputs; /* that it has */
     uint8_t reset;   /* why it was reset last: the chip's own bits */
     uint8_t board[12];
+    uint8_t session;  /* of the hello */
+    uint8_t expected; /* sequence number of the next order; not 0 where the session's number was in use already */
+    uint8_t reserved[2];
 } trochia_answer;
 
 typedef struct {

@@ -61,7 +61,9 @@ static void answer(trochia_frame_out *out) {
                            .motors = BOARD_MOTORS,
                            .inputs = BOARD_INPUTS,
                            .outputs = BOARD_OUTPUTS,
-                           .reset = reset_by};
+                           .reset = reset_by,
+                           .session = session,
+                           .expected = expected};
     memcpy(told.board, board_name, sizeof told.board);
     trochia_frame_begin(out, sending, 0, TROCHIA_ANSWER);
     put(out, &told, sizeof told);

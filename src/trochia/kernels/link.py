@@ -25,6 +25,7 @@ PART = np.dtype([("first", "<u4"), *((name, SEGMENT[name]) for name in SEGMENT.n
 PULSE = dtype_of("trochia_pulse_at")
 STATUS = dtype_of("trochia_status")
 SCHEMA: int = lib.trochia_schema()
+SCHEMA_BYTES = 4  #: of an answer, at its beginning in every version
 MOTORS, SLICE, FULL_RATE = lib.TROCHIA_MOTORS, lib.TROCHIA_SLICE, lib.TROCHIA_FULL_RATE
 PAYLOAD = lib.TROCHIA_PAYLOAD  #: greatest payload of a frame [bytes]
 LOOSE = lib.TROCHIA_LOOSE  #: types from here on are not numbered

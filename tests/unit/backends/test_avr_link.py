@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+
 import numpy as np
 import pytest
 
@@ -25,7 +27,8 @@ class Chip:
                 if got.payload[9] != self.session:
                     self.session, self.expected = got.payload[9], 0
                 answer = np.zeros((), ANSWER)
-                answer["schema"], answer["room"] = self.schema, 1000
+                answer["schema"], answer["room"], answer["session"] = self.schema, 1000, self.session
+                answer["expected"] = self.expected
                 answers += frame(0, TYPES["answer"], answer.tobytes())
                 continue
             if 0 <= got.kind < TYPES["hello"] and got.number == self.expected:
@@ -36,38 +39,23 @@ class Chip:
             answers += frame(0, TYPES["ack"], ack.tobytes())
         return answers
 
-
-def spoil(data: bytes, rng: np.random.Generator, rate: float) -> tuple[bytes, int]:
-    """Drops, flips, doubles bytes, or cuts what is left; returns how often as well."""
-    kept, faults = bytearray(), 0
-    for byte in data:
-        kind = rng.random() / rate
-        if kind >= 1.0:
-            kept.append(byte)
-            continue
-        faults += 1
-        if kind < 0.3:
-            kept.append(byte ^ (1 << int(rng.integers(8))))
-        elif kind < 0.6:
-            kept += bytes([byte, byte])
-        elif kind < 0.65:
-            return bytes(kept), faults
-    return bytes(kept), faults
+    def exchange(self, data: bytes, _now: float) -> bytes:
+        return self.receive(data)
 
 
 def test_orders_arrive_once_and_in_order_whatever_the_line_does():
     rng = np.random.default_rng(8)
-    host, chip, now, faults = Session(1_000_000), Chip(), 0.0, 0
+    host, chip, now = Session(1_000_000), Chip(), 0.0
+    line = sys.modules["spoilt_line"].SpoiltLine(chip, 8, rate=0.01)
     host.greet(now)
     sent: list[bytes] = []
-    while faults < FAULTS or host.waiting:
-        rate = 0.01 if faults < FAULTS else 1e-9
-        there, some = spoil(host.outgoing(now), rng, rate)
-        back, more = spoil(chip.receive(there), rng, rate)
-        faults += some + more
+    while line.faults < FAULTS or host.waiting:
+        if line.faults >= FAULTS:
+            line.mend()
+        back = line.exchange(host.outgoing(now), now + 0.002)
         now += 0.002
         host.receive(back, now)
-        if host.state in {"open", "lost"} and faults < FAULTS and host.waiting < 6:
+        if host.state in {"open", "lost"} and line.faults < FAULTS and host.waiting < 6:
             sent.append(rng.bytes(int(rng.integers(1, 90))))
             host.order("switch", sent[-1])
     assert len(sent) > 300
@@ -83,6 +71,35 @@ def test_another_schema_is_refused_with_both_named():
         host.receive(chip.receive(host.outgoing(0.0)), 0.01)
     with pytest.raises(LocalProtocolError, match="refused"):
         host.order("go")
+
+
+def test_another_schema_is_told_whatever_else_its_answer_holds():
+    host = Session()
+    host.greet(0.0)
+    with pytest.raises(VersionMismatch, match="12345678"):
+        host.receive(frame(0, TYPES["answer"], bytes.fromhex("78563412")), 0.01)
+
+
+def test_a_board_that_was_not_reset_takes_orders_of_the_next_host_with_the_same_number():
+    chip = Chip()
+    for payload in (b"first", b"second"):
+        host = Session()
+        host.greet(0.0)
+        host.receive(chip.receive(host.outgoing(0.0)), 0.01)
+        token = host.order("switch", payload)
+        host.receive(chip.receive(host.outgoing(0.01)), 0.02)
+        assert (host.taken > token, host.waiting) == (True, 0)
+    assert chip.taken == [b"first", b"second"]
+
+
+def test_an_answer_to_an_earlier_hello_is_none():
+    host, chip = Session(), Chip()
+    host.greet(0.0)
+    late = chip.receive(host.outgoing(0.0))
+    host.greet(0.1)
+    assert host.receive(late, 0.2) == []
+    assert host.state == "greeting"
+    assert len(host.receive(chip.receive(host.outgoing(0.2)), 0.3)) == 1
 
 
 def test_a_greeting_is_answered_once():

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trochia.backends.avr.session import Greeted, Session, Told
+from trochia.backends.avr.transports import Transport, first_number
 from trochia.backends.avr.troubles import described
 from trochia.errors import LinkError, LinkTimeout, RemoteProtocolError
 from trochia.kernels.link import BEGIN, CAUSES, PUT, STATES
@@ -18,7 +19,6 @@ from trochia.kernels.link import BEGIN, CAUSES, PUT, STATES
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from trochia.backends.avr.transports import Transport
 
 CONNECT = 4.0  #: a board may take that long to answer after its reset [s]
 TURN = 0.001  #: between turns [s]
@@ -41,7 +41,7 @@ class BoardLine:
 
     def __init__(self, transport: Transport, board: str) -> None:
         self._transport = transport
-        self._session = Session(transport.baud)
+        self._session = Session(transport.baud, seed=first_number(transport))
         self._answer: Any = None
         self._told: Told | None = None
         self._asked = self._heard = 0.0

@@ -17,6 +17,7 @@ from trochia.backends.avr.clock import ChipClock
 from trochia.backends.avr.inputs import Inputs
 from trochia.backends.avr.session import Greeted, Session, Told
 from trochia.backends.avr.spans import SpanMaker, shortened, steps_made
+from trochia.backends.avr.transports import Transport, first_number
 from trochia.backends.avr.troubles import TROUBLES, described
 from trochia.backends.avr.wiring import BOARDS, steps_per_unit, wire
 from trochia.backends.live import BUILT_IN, Orders, Report, Trouble
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from trochia.backends.avr.spans import Span
-    from trochia.backends.avr.transports import Transport
     from trochia.backends.live import Watch
     from trochia.machine.machine import Machine
 
@@ -69,7 +69,7 @@ class LiveAvr:
         self._names = [joint.name for joint in machine.joints]
         self.outputs = dict.fromkeys((*BUILT_IN, *self.wiring.outputs), 0.0)
         self.transport = transport
-        self.session = Session(transport.baud)
+        self.session = Session(transport.baud, seed=first_number(transport))
         self.clock = ChipClock(16_000_000)
         self.answer: Any = None
         self.status: Any = None

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 import time
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import serial
@@ -19,7 +19,7 @@ from serial.tools import list_ports
 from trochia.backends.avr.images import BAUDS
 from trochia.backends.avr.troubles import GRBL, described
 from trochia.errors import LinkError
-from trochia.kernels.link import ANSWER, HELLO, SCHEMA, TYPES, FrameReader, frame
+from trochia.kernels.link import ANSWER, HELLO, SCHEMA, SCHEMA_BYTES, TYPES, FrameReader, frame
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -123,8 +123,8 @@ def _asked(line: serial.SerialBase, port: str, boots: float, clock: Callable[[],
             came = _listen(line, EVERY)
             heard += came
             for got in reader.feed(came):
-                if got.kind == TYPES["answer"] and len(got.payload) == ANSWER.itemsize:
-                    return _ours(port, baud, np.frombuffer(got.payload, ANSWER)[0])
+                if got.kind == TYPES["answer"] and len(got.payload) >= SCHEMA_BYTES:
+                    return _ours(port, baud, got.payload)
     return Found(port=port, kind="other" if heard else "silent", text=described(bytes(heard)))
 
 
@@ -134,7 +134,9 @@ def _listen(line: serial.SerialBase, seconds: float) -> bytes:
     return bytes(line.read(4096))
 
 
-def _ours(port: str, baud: int, answer: Any) -> Found:  # noqa: ANN401 - a numpy record has no type of its own
+def _ours(port: str, baud: int, payload: bytes) -> Found:
+    """Return what an answer says; one of another version may be shorter or longer."""
+    answer = np.frombuffer(payload[: ANSWER.itemsize].ljust(ANSWER.itemsize, b"\0"), ANSWER)[0]
     board, schema = bytes(answer["board"]).rstrip(b"\0").decode("ascii", "replace"), int(answer["schema"])
     text = f"{board} at {baud} baud, schema {schema:08x}"
     if schema != SCHEMA:

@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 
 from trochia.errors import LocalProtocolError, VersionMismatch
-from trochia.kernels.link import ACK, ANSWER, HELLO, LOOSE, SCHEMA, STATUS, TYPES, FrameReader, frame
+from trochia.kernels.link import ACK, ANSWER, HELLO, LOOSE, SCHEMA, SCHEMA_BYTES, STATUS, TYPES, FrameReader, frame
 
 PATIENCE = 0.5  #: of the host [s]
 KEPT = 200  #: bytes of what is not understood
@@ -215,8 +215,8 @@ class Session:
         return events
 
     def _take(self, kind: str, payload: bytes, now: float) -> Event | None:
-        if kind == "answer" and len(payload) == ANSWER.itemsize:
-            return self._answered(np.frombuffer(payload, ANSWER)[0], now)
+        if kind == "answer" and len(payload) >= SCHEMA_BYTES:
+            return self._answered(payload, now)
         if self.state not in {"open", "lost"}:
             return None
         if kind == "ack" and len(payload) == ACK.itemsize:
@@ -230,15 +230,20 @@ class Session:
             return Told(status=status, time=now, taken=self._taken)
         return None
 
-    def _answered(self, answer: Any, now: float) -> Event | None:  # noqa: ANN401 - a numpy record has no type of its own
+    def _answered(self, payload: bytes, now: float) -> Event | None:
         if self.state != "greeting":
             return None
-        if int(answer["schema"]) != SCHEMA:
+        schema = int.from_bytes(payload[:SCHEMA_BYTES], "little")
+        if schema != SCHEMA:
             self.state = "refused"
             raise VersionMismatch(
-                f"the board speaks schema {int(answer['schema']):08x}, this program {SCHEMA:08x}",
+                f"the board speaks schema {schema:08x}, this program {SCHEMA:08x}",
                 hint="Write the image that belongs to this program with `trochia flash`.",
             )
+        answer = np.frombuffer(payload, ANSWER)[0] if len(payload) == ANSWER.itemsize else None
+        if answer is None or int(answer["session"]) != self._session:
+            return None  # to a hello before this one, by this host or another
+        self._next = self._taken = int(answer["expected"])  # 0, unless another host had the session's number
         self._room = int(answer["room"])
         self._heard, self.state = now, "open"
         return Greeted(answer=answer)

@@ -1,0 +1,35 @@
+/* The firmware's C on this computer, for campaigns that are too long for a simulated processor.
+ *
+ * hardware.c does what the chip's hardware and the assembler files do: registers, the serial port, the step interrupt.
+ * main.c obeys the same requests as the simulated chip (firmware/sim/main.c). */
+#ifndef TROCHIA_HOST_CHIP_H
+#define TROCHIA_HOST_CHIP_H
+
+#include <stdint.h>
+
+/* What happened; as in firmware/sim/chip.h. */
+typedef struct {
+    uint64_t cycle;
+    uint8_t kind, unit, line, reserved;
+    uint32_t value;
+} event;
+
+enum event_kind { EVENT_PIN = 1, EVENT_BYTE = 2 };
+
+void record(uint64_t cycle, uint8_t kind, uint8_t unit, uint8_t line, uint32_t value);
+
+extern uint64_t cycle; /* since reset */
+
+void chip_reset(void);
+void chip_run(uint64_t until);
+
+/* Bytes to the serial port; how many have not arrived yet. */
+void chip_feed(const uint8_t *bytes, uint32_t count);
+uint32_t chip_unread(void);
+
+void chip_set_pin(uint8_t port, uint8_t pin, uint8_t level);
+
+/* A register by its address in data memory, where it is one that tests look at. */
+uint8_t chip_register(uint16_t address);
+
+#endif
