@@ -21,11 +21,21 @@
 #include <string.h>
 
 #include <simavr/avr_adc.h>
+#include <simavr/avr_extint.h>
 #include <simavr/avr_ioport.h>
 #include <simavr/sim_core.h>
 #include <simavr/sim_elf.h>
 
-enum { ENTRY = 4, WAKE = 4, RETI = 4, LONGEST = 1 << 24, PORTS = 12, VECTORS = 64, SUPPLY = 5000 /* mV */ };
+enum {
+    ENTRY = 4,
+    WAKE = 4,
+    RETI = 4,
+    LONGEST = 1 << 24,
+    PORTS = 12,
+    VECTORS = 64,
+    EXTERNAL = EXTINT_COUNT,
+    SUPPLY = 5000 /* mV */
+};
 
 typedef struct {
     uint64_t cycle;
@@ -279,6 +289,8 @@ int main(int count, char **arguments) {
     chip->vcc = chip->avcc = chip->aref = SUPPLY;
     watch_pins();
     take_units();
+    for (uint8_t i = 0; i < EXTERNAL; i++) /* nobody uses them, and they would look at their pins cycle for cycle */
+        avr_extint_set_strict_lvl_trig(chip, i, 0);
     avr_irq_register_notify(avr_get_interrupt_irq(chip, AVR_INT_ANY) + AVR_INT_IRQ_RUNNING, interrupt_ends, NULL);
     while (listen())
         ;
