@@ -9,7 +9,7 @@ import numpy as np
 from trochia.backends.avr.session import Greeted, Session, Told
 from trochia.backends.avr.transports import ChipTransport
 from trochia.backends.avr.wiring import BOARDS
-from trochia.kernels.link import AT_REST, BEGIN, PART, PUT, SET_OUTPUTS, SPAN
+from trochia.kernels.link import AT_REST, BEGIN, PART, PUT, SET_OUTPUTS, SPAN, STATES
 from trochia.kernels.ticks import BACKWARDS
 
 if TYPE_CHECKING:
@@ -89,6 +89,26 @@ class Talk:
         self.session.order("go")
         self.pass_on(seconds)
         return self.ask()
+
+    def stream(self, spans: list[bytes], *, status: float = 0.01) -> Any:
+        """Send spans as there is room, a status asked for every so often, until all is done; return the last one."""
+        self.switch(enable=1)
+        self.begin()
+        sent, started, asked = 0, False, self.now
+        while True:
+            while sent < len(spans) and self.session.room >= len(spans[sent]) and self.session.waiting < 3:
+                self.session.order("span", spans[sent])
+                sent += 1
+            full = sent == len(spans) or self.session.room < len(spans[sent])
+            if not started and full and not self.session.waiting:
+                self.session.order("go")
+                started, self.status = True, None
+            if self.now - asked >= status:
+                self.session.ask()
+                asked = self.now
+            self.pass_on(STRIDE)
+            if started and self.status is not None and STATES[int(self.status["state"])] in {"idle", "stopped"}:
+                return self.ask()
 
     def events(self) -> NDArray[np.void]:
         """Return what happened at the pins since this was asked last."""

@@ -73,6 +73,20 @@ def _part(rng: np.random.Generator, kind: Kind, ticks: int, *, back: bool) -> An
     return sys.modules["steady_spans"].part(first, begin, steps, stride=stride, add=add, flags=flags)
 
 
+def stream_of(steps: list[Any], ticks: list[Any], apart: int) -> NDArray[np.uint8]:
+    """Return the stream of pulses: the motors that step at once, a bit each, and those of them that go backwards
+    (pulses, 2); `apart` is the time from which on two pulses are not one."""
+    motors = np.concatenate([np.full(len(one), 1 << motor) for motor, one in enumerate(steps)])
+    back = np.where(np.concatenate(steps) < 0, motors, 0)
+    at = np.concatenate(ticks)
+    order = at.argsort(kind="stable")
+    at = at[order]
+    begins = np.flatnonzero(np.diff(at, prepend=-1_000_000) > apart)
+    if not len(begins):
+        return np.empty((0, 2), np.uint8)
+    return np.column_stack([np.bitwise_or.reduceat(bits[order], begins) for bits in (motors, back)]).astype(np.uint8)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Planned:
     """What a host core makes of spans: each motor's steps, +1 or -1, their ticks, and where all ends."""
