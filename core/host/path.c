@@ -80,6 +80,24 @@ void trochia_path_append(const trochia_segment *segments, uint64_t count, uint64
     }
 }
 
+uint64_t trochia_path_reach(const trochia_segment *segments, uint64_t count, double feed, double most,
+                            double *seconds) {
+    uint64_t k = 0;
+    double left = *seconds;
+    for (; k < count && left > 0.0; k++)
+        left -= segments[k].length / fmin(segments[k].speed_limit * feed, most);
+    *seconds = left;
+    return k;
+}
+
+void trochia_phases_move(const trochia_phase *phases, uint64_t count, double later, uint32_t rows, trochia_phase *out) {
+    for (uint64_t k = 0; k < count; k++) {
+        out[k] = phases[k];
+        out[k].t += later;
+        out[k].segment += rows;
+    }
+}
+
 /* Chain rule: of x(s(t)) with ds/dt = v, its derivative a, and the derivative of that j. */
 void trochia_path_sample(const trochia_segment *segments, const double *pool, uint32_t n, const trochia_phase *states,
                          uint64_t count, uint32_t order, double *out) {

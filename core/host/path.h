@@ -60,6 +60,14 @@ int32_t trochia_path_check(const trochia_segment *segments, uint64_t count, uint
 void trochia_path_append(const trochia_segment *segments, uint64_t count, uint64_t shift, uint32_t first,
                          const trochia_move *moves, trochia_segment *out, uint32_t *lines, float *power);
 
+/* How many segments, from the first on, take `seconds` together at their own speeds times `feed`, none faster than
+ * `most`: all of them where they take less.  Takes off `seconds` what they take. */
+uint64_t trochia_path_reach(const trochia_segment *segments, uint64_t count, double feed, double most, double *seconds);
+
+/* Copies `count` phases, `later` by so much, their segments by `rows` further on (modulo 2^32: also back); `out` may be
+ * where they are. */
+void trochia_phases_move(const trochia_phase *phases, uint64_t count, double later, uint32_t rows, trochia_phase *out);
+
 /* Widens least[n], greatest[n] by the segments [first, last), exactly (arcs and cubics by the roots of x'). */
 void trochia_path_extents(const trochia_segment *segments, const double *pool, uint32_t n, uint64_t first,
                           uint64_t last, double *least, double *greatest);

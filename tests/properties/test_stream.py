@@ -27,7 +27,6 @@ def _small():
         patch.setattr(paving, "_CHUNK", 64)
         patch.setattr(paving, "REACH", 40)
         patch.setattr(stream, "WINDOW", 8.0)
-        patch.setattr(stream, "_ROWS", 0)
         yield
 
 

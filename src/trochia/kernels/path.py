@@ -13,7 +13,7 @@ from trochia.kernels.layout import MOVE, PHASE, SEGMENT, ffi, lib, pointer
 from trochia.kernels.spline import PIECE
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
@@ -23,18 +23,34 @@ _FAULTS = {0: None, 1: "feed", 2: "spindle", 3: "spline", 4: "axis"}
 
 
 class Room:
-    """Memory that one path after another is built in: each is gone when the next is built."""
+    """Memory that one path after another is built in: each is gone when the next is built.
 
-    __slots__ = ("pool", "segments")
+    Attributes
+    ----------
+    keeper
+        Who gives the memory for so many coefficients, and may keep what is built there; None: the room's own.
+    """
+
+    __slots__ = ("keeper", "pool", "segments")
 
     def __init__(self) -> None:
         self.segments: NDArray[np.void] = np.empty(0, dtype=SEGMENT)
         self.pool: NDArray[np.float64] = np.empty(0)
+        self.keeper: Callable[[int], NDArray[np.float64]] | None = None
+
+    def reserve(self, moves: int, axes: int, continuity: int) -> None:
+        """Have room for what any so many moves may need."""
+        most, rows = _ROOM[continuity]
+        self.take(most * moves, (7 + rows * axes) * moves)
 
     def take(self, segments: int, pool: int) -> None:
         """Have room for so many segments and coefficients."""
-        if len(self.segments) < segments or len(self.pool) < pool:
-            self.segments, self.pool = np.empty(segments, dtype=SEGMENT), np.empty(pool)
+        if len(self.segments) < segments:
+            self.segments = np.empty(segments, dtype=SEGMENT)
+        if self.keeper is not None:
+            self.pool = self.keeper(pool)
+        elif len(self.pool) < pool:
+            self.pool = np.empty(pool)
 
 
 def build(
@@ -181,6 +197,32 @@ def append(
         pointer(segments, "trochia_segment *"), len(segments), shift % 2**64, first, pointer(moves, "trochia_move *"),
         pointer(rows, "trochia_segment *"), pointer(lines, "uint32_t *"), pointer(power, "float *"),
     )  # fmt: skip
+
+
+def reach(segments: NDArray[np.void], seconds: float, *, feed: float, most: float) -> tuple[int, float]:
+    """Return how many segments, from the first on, take some seconds together, and what is left of these.
+
+    Parameters
+    ----------
+    segments
+        Rows of SEGMENT (k,); where all take less, all count.
+    seconds
+        At the segments' own speeds [s].
+    feed, most
+        What these are scaled by, and the greatest there is.
+    """
+    left = ffi.new("double *", seconds)
+    rows = lib.trochia_path_reach(pointer(segments, "trochia_segment *"), len(segments), feed, most, left)
+    return int(rows), float(left[0])
+
+
+def move_phases(phases: NDArray[np.void], into: NDArray[np.void], *, later: float = 0.0, rows: int = 0) -> None:
+    """Copy phases into as many others (or themselves), later by so much [s] and on segments so many rows further on."""
+    if not phases.dtype == into.dtype == PHASE or len(phases) != len(into):
+        raise ValueError("as many rows of PHASE as there are phases")
+    lib.trochia_phases_move(
+        pointer(phases, "trochia_phase *"), len(phases), later, rows % 2**32, pointer(into, "trochia_phase *")
+    )
 
 
 def sample(

@@ -13,7 +13,7 @@ from trochia.kernels.layout import PHASE, SEGMENT, dtype_of, ffi, lib, pointer
 from trochia.kernels.limits import limits_struct, rising_rests
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
@@ -75,14 +75,14 @@ class Planned:
         where, seconds = self._rests
         return pointer(where, "uint64_t *"), pointer(seconds, "double *"), len(where)
 
-    def phases(self, size: int) -> Iterator[NDArray[np.void]]:
-        """Yield phases in order, at most ``size`` (at least 4) a block (PHASE,)."""
+    def phases(self, size: int, memory: Callable[[int], NDArray[np.void]] | None = None) -> Iterator[NDArray[np.void]]:
+        """Yield phases in order, at most ``size`` (at least 4) a block (PHASE,); ``memory`` gives that of a block."""
         if size < _LEAST_ROOM:
             raise ValueError(f"a block of phases needs room for {_LEAST_ROOM}, not {size}")
         cursor = ffi.new("trochia_phase_cursor *")
         segments, _ = self._path()
         while True:
-            block = np.empty(size, dtype=PHASE)
+            block = np.empty(size, dtype=PHASE) if memory is None else memory(size)[:size]
             made = lib.trochia_plan_phases(
                 segments,
                 self._piece(),

@@ -13,7 +13,7 @@ from trochia.kernels.layout import PHASE, SEGMENT, dtype_of, ffi, lib, pointer
 from trochia.kernels.limits import limits_struct, rising_rests
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
@@ -118,13 +118,15 @@ class Ramps:
         """Whole time, rests included [s]."""
         return float(self.knots["t"][-1])
 
-    def phases(self, size: int = _BLOCK) -> Iterator[NDArray[np.void]]:
-        """Yield phases in order, at most ``size`` a block (PHASE,)."""
+    def phases(
+        self, size: int = _BLOCK, memory: Callable[[int], NDArray[np.void]] | None = None
+    ) -> Iterator[NDArray[np.void]]:
+        """Yield phases in order, at most ``size`` a block (PHASE,); ``memory`` gives that of a block."""
         if size < 1:
             raise ValueError(f"a block of phases needs room for one, not {size}")
         cursor = ffi.new("trochia_knot_cursor *")
         while True:
-            block = np.empty(size, dtype=PHASE)
+            block = np.empty(size, dtype=PHASE) if memory is None else memory(size)[:size]
             made = lib.trochia_scurve_phases(
                 pointer(self._starts, "double *"), len(self._segments), self._knot(), len(self.knots), cursor,
                 pointer(block, "trochia_phase *"), size,

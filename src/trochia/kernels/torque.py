@@ -13,7 +13,7 @@ from trochia.kernels.layout import PHASE, SEGMENT, dtype_of, ffi, lib, pointer
 from trochia.kernels.limits import limits_struct, rising_rests
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
     from numpy.typing import NDArray
 
@@ -76,13 +76,13 @@ class Falling:
     def _piece(self) -> Any:  # noqa: ANN401 - a cffi pointer has no Python type
         return pointer(self.pieces, "trochia_torque_piece *")
 
-    def phases(self, size: int) -> Iterator[NDArray[np.void]]:
-        """Yield phases in order, at most ``size`` (at least 1) a block (PHASE,)."""
+    def phases(self, size: int, memory: Callable[[int], NDArray[np.void]] | None = None) -> Iterator[NDArray[np.void]]:
+        """Yield phases in order, at most ``size`` (at least 1) a block (PHASE,); ``memory`` gives that of a block."""
         if size < 1:
             raise ValueError(f"a block of phases needs room for one, not {size}")
         cursor = ffi.new("trochia_phase_cursor *")
         while True:
-            block = np.empty(_ROOM, dtype=PHASE)
+            block = np.empty(_ROOM, dtype=PHASE) if memory is None else memory(_ROOM)[:_ROOM]
             made = lib.trochia_torque_phases(
                 self._task, self._piece(), len(self.pieces), cursor, pointer(block, "trochia_phase *"), _ROOM
             )

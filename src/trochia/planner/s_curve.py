@@ -13,7 +13,7 @@ from trochia.errors import LimitError
 from trochia.kernels.scurve import Ramps
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
@@ -57,9 +57,9 @@ class SCurveSchedule:
         """From first motion or rest to last [s]."""
         return self._ramps.duration
 
-    def phases(self, size: int) -> Iterator[NDArray[np.void]]:
-        """Yield all phases in order in blocks of at most ``size`` (PHASE,)."""
-        return self._ramps.phases(size)
+    def phases(self, size: int, memory: Callable[[int], NDArray[np.void]] | None = None) -> Iterator[NDArray[np.void]]:
+        """Yield all phases in order in blocks of at most ``size`` (PHASE,), in ``memory`` if there is any."""
+        return self._ramps.phases(size, memory)
 
     def states(self, times: NDArray[np.float64]) -> NDArray[np.void]:
         """Return segment, s, v, a and j at each time [s], clamped to the ends (times,) of PHASE."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     import numpy as np
     from numpy.typing import NDArray
@@ -36,8 +36,11 @@ class Schedule(Protocol):
         """Whether acceleration follows the limits' curves by speed; where not, it keeps the least of each."""
         ...
 
-    def phases(self, size: int) -> Iterator[NDArray[np.void]]:
-        """Yield all phases in order, without a gap, in blocks of at most ``size`` (PHASE,)."""
+    def phases(self, size: int, memory: Callable[[int], NDArray[np.void]] | None = None) -> Iterator[NDArray[np.void]]:
+        """Yield all phases in order, without a gap, in blocks of at most ``size`` (PHASE,).
+
+        ``memory`` gives room for so many or more, for a block each; None: it is new.
+        """
         ...
 
     def states(self, times: NDArray[np.float64]) -> NDArray[np.void]:

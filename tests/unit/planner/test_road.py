@@ -5,9 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from trochia.kernels.layout import MOVE, SEGMENT
+from trochia.kernels import path as kernel
+from trochia.kernels.layout import MOVE, PHASE, SEGMENT
 from trochia.planner.live.held import Held
 from trochia.planner.live.road import Road, Stretch
+from trochia.planner.live.rows import Reused
 
 AXES = "XY"
 
@@ -97,3 +99,38 @@ def test_moves_of_one_block_are_not_copied():
     held.drop(20)
     held.take(moves, 60, 100)
     assert np.shares_memory(held.since(30), moves)
+
+
+def test_memory_is_taken_again_when_nobody_looks_at_it():
+    memory = Reused(np.float64)
+    first = memory.take(100)
+    second = memory.take(100)
+    assert not np.shares_memory(first, second)
+    view = first[3:7]
+    del first
+    third = memory.take(100)
+    assert not np.shares_memory(third, view)  # somebody still looks at it
+    at = view.__array_interface__["data"][0] - 3 * view.itemsize
+    del view
+    assert memory.take(100).__array_interface__["data"][0] == at
+    assert len(memory.take(1000)) >= 1000
+
+
+def test_rows_are_reached_by_the_time_they_take():
+    rows = np.zeros(4, dtype=SEGMENT)
+    rows["length"], rows["speed_limit"] = [10.0, 20.0, 30.0, 40.0], [10.0, 10.0, np.inf, 10.0]
+    assert kernel.reach(rows, 2.0, feed=1.0, most=15.0) == (2, -1.0)  # 1 s, 2 s
+    assert kernel.reach(rows, 100.0, feed=0.5, most=15.0) == (4, 100.0 - 2.0 - 4.0 - 2.0 - 8.0)
+    assert kernel.reach(rows, 0.0, feed=1.0, most=15.0) == (0, 0.0)
+
+
+def test_phases_are_moved_in_time_and_along_the_road():
+    phases = np.zeros(3, dtype=PHASE)
+    phases["t"], phases["segment"], phases["v"] = [0.0, 1.0, 2.5], [7, 7, 9], [1.0, 2.0, 3.0]
+    moved = np.empty(3, dtype=PHASE)
+    kernel.move_phases(phases, moved, later=0.5, rows=-7)
+    assert (moved["t"] == [0.5, 1.5, 3.0]).all()
+    assert (moved["segment"] == [0, 0, 2]).all()
+    assert (moved["v"] == phases["v"]).all()
+    with pytest.raises(ValueError, match="as many rows"):
+        kernel.move_phases(phases, moved[:2])

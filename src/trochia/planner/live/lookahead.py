@@ -14,13 +14,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from trochia.kernels import path as kernel
 from trochia.kernels.layout import PHASE
 from trochia.planner.live.change import Ahead, change
 from trochia.planner.live.hold import hold
 from trochia.planner.live.portion import moved_on, states_at
 from trochia.planner.live.road import Place
-from trochia.planner.live.rows import joined, put
-from trochia.planner.live.window import plan_window
+from trochia.planner.live.rows import Reused, copied, joined, put
+from trochia.planner.live.window import plan_rows
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -32,10 +33,10 @@ SETTLE = 2.0  #: settling time, in worst stopping times: on bends less than the 
 WARM = 3.0  #: how far behind a window begins, in the same
 WINDOW = 40.0  #: how much a window adds, in the same, where motion may yet be told to change
 FIRST = 5.0  #: and the first, so that motion begins soon
+GROWTH = 4.0  #: times the window before
 _SAME_PLACE = 1e-9  #: mm or degree
 _SAME_SPEED = 1e-9  #: of each other
 _SAME_ACCELERATION = 1e-7  #: of the limit
-_BLOCK = 8192
 
 
 class Lookahead:
@@ -58,8 +59,8 @@ class Lookahead:
         Whether the rest that stands before that place is over.
     window
         How much a window adds, in worst stopping times; None: :data:`WINDOW`.
-    rows
-        How many segments it adds at least, once windows have grown: few long ones are not worth a window.
+    whole
+        Whether it goes on to the end of what the road has in hand by then: few long segments are not worth a window.
     """
 
     def __init__(
@@ -72,15 +73,18 @@ class Lookahead:
         *,
         rested: bool = False,
         window: float | None = None,
-        rows: int = 0,
+        whole: bool = False,
     ) -> None:
         self.road, self.rules, self.speeds = road, rules, speeds
         self.stopped = False
         self._start, self._begin, self._rested = start, t, rested
         self._feed = speeds.feed  # greatest that the phases in hand are planned for
         self._stop = rules.stopping_time
-        self._span, self._window, self._rows = FIRST, WINDOW if window is None else window, rows
+        axes, caps = rules.limits.matrix.shape[1], rules.limits
+        self._most = min(float(np.linalg.norm(caps.velocity[:axes])), caps.path_velocity)  # speed there ever is
+        self._span, self._window, self._whole = FIRST, WINDOW if window is None else window, whole
         self._end = self._reach(start.row, FIRST + SETTLE)
+        self._windows, self._most_phases = Reused(PHASE), 0  # where windows are planned; phases of one so far
         self._memory, self._at = np.empty(0, dtype=PHASE), 0  # what phases that are gone on with lie in, and where
         self.phases = self._from(start, t)
         self.safe = 0
@@ -107,10 +111,10 @@ class Lookahead:
             return False
         before = self.safe
         while self.safe == before and not self.finished:
-            self._end = self._reach(self._end, self._span, self._rows if self._span >= self._window else 0)
+            self._end = self._reach(self._end, self._span)
             self._join()
             self._settle()
-            self._span = min(2.0 * self._span, self._window)
+            self._span = min(GROWTH * self._span, self._window)
         return True
 
     def state(self, t: float) -> NDArray[Any]:
@@ -170,7 +174,7 @@ class Lookahead:
             if self.safe or self.finished:
                 return
             self._end = self._reach(self._end, self._span)
-            self._span = min(2.0 * self._span, self._window)
+            self._span = min(GROWTH * self._span, self._window)
 
     def _way_over(self, old: NDArray[Any], t: float) -> tuple[NDArray[Any], NDArray[Any]]:
         """Return the phases in hand up to where the plan for other speeds goes on, and what goes on."""
@@ -206,32 +210,29 @@ class Lookahead:
 
     def _from(self, start: Place, t: float) -> NDArray[Any]:
         """Return the motion from rest at a place to the end of the window, begun at ``t``."""
-        if self._end > start.row:
-            phases = plan_window(self.road, self.rules, start, self._end, self.speeds)
-        else:
-            phases = _still(self.road, start)
-        if self._rested and start == self._start:
-            phases = phases[phases["flags"].argmin() :]
-        if t != phases["t"][0]:
-            phases["t"] += t - phases["t"][0]
+        phases = self._raw(start)
+        kernel.move_phases(phases, phases, later=t - float(phases["t"][0]), rows=start.row)
         return phases
 
-    def _reach(self, row: int, times: float, least: int = 0) -> int:
-        """Return the row some (worst stopping) times after ``row``, if all went at full speed, and ``least`` rows."""
+    def _raw(self, start: Place) -> NDArray[Any]:
+        """Return the same, but its segments count from that place."""
+        if self._end > start.row:
+            phases = plan_rows(self.road, self.rules, start, self._end, self.speeds,
+                               memory=self._windows, room=self._most_phases)  # fmt: skip
+            self._most_phases = max(self._most_phases, len(phases))
+        else:
+            phases = _still(self.road, start)
+        return phases[phases["flags"].argmin() :] if self._rested and start == self._start else phases
+
+    def _reach(self, row: int, times: float) -> int:
+        """Return the row some (worst stopping) times after ``row``, if all went at full speed, or one farther on."""
         road, wanted, end = self.road, times * self._stop, row
-        limits = self.rules.limits
-        most = min(float(np.linalg.norm(limits.velocity[: limits.matrix.shape[1]])), limits.path_velocity)
-        while wanted > 0.0 or end < row + least:
+        while wanted > 0.0:
             if end >= road.end and not road.more():
                 return road.end
-            rows = road.rows(end, min(end + _BLOCK, road.end))
-            count = min(max(row + least - end, 0), len(rows))
-            if wanted > 0.0:
-                seconds: NDArray[np.float64] = rows["length"] / np.minimum(rows["speed_limit"] * self.speeds.feed, most)
-                whole = float(seconds.sum())
-                enough = len(rows) if whole < wanted else int(np.searchsorted(np.cumsum(seconds), wanted)) + 1
-                count, wanted = min(max(count, enough), len(rows)), wanted - whole
+            count, wanted = kernel.reach(road.rows(end, road.end), wanted, feed=self.speeds.feed, most=self._most)
             end += count
+        end = road.end if self._whole else end
         if end >= road.end:
             road.more()  # whether the program ends here
         return end
@@ -256,14 +257,14 @@ class Lookahead:
         while True:
             behind = _joint_before(old, t - warm, 0)
             start = self._first() if behind is None else Place(int(old["segment"][behind]), 0.0)
-            new = self._from(start, 0.0)
-            if self._splice(new, [joint]):
+            new = self._raw(start)
+            if self._splice(new, start.row, [joint]):
                 return
             if behind is None:
                 break
             warm *= 2.0
         joints = _joints(old)
-        if not self._splice(new, [int(k) for k in joints[joints > joint]]):
+        if not self._splice(new, start.row, [int(k) for k in joints[joints > joint]]):
             rest = self.end_time
             self.phases = joined([old, self._from(Place(int(old["segment"][-1]) + 1, 0.0), rest)])
 
@@ -275,27 +276,34 @@ class Lookahead:
         joint = int(_joints(self.phases)[0])
         return Place(int(self.phases["segment"][joint]), 0.0)
 
-    def _splice(self, new: NDArray[Any], joints: list[int]) -> bool:
-        """Go on as ``new`` from the first of some joints where it agrees with the phases in hand; False: nowhere."""
+    def _splice(self, new: NDArray[Any], row: int, joints: list[int]) -> bool:
+        """Go on as ``new`` from the first of some joints where it agrees with the phases in hand; False: nowhere.
+
+        The segments of ``new`` count from ``row``.
+        """
+        segments = new["segment"]
         for joint in joints:
             here = self.phases[joint]
-            k = bisect_left(new["segment"], here["segment"])
+            segment = int(here["segment"]) - row
+            k = bisect_left(segments, segment)
             while k < len(new) and new["flags"][k] & 1:
                 k += 1
-            if k < len(new) and new["segment"][k] == here["segment"] and self._agree(here, new[k]):
-                rest = new[k:]
-                rest["t"] += here["t"] - rest["t"][0]
-                self._go_on(joint, rest)
+            if k < len(new) and segments[k] == segment and self._agree(here, new[k]):
+                self._go_on(joint, new[k:], row)
                 return True
         return False
 
-    def _go_on(self, count: int, rest: NDArray[Any]) -> None:
+    def _go_on(self, count: int, rest: NDArray[Any], row: int) -> None:
         """Go on as ``rest`` behind the first ``count`` phases in hand, which are copied only now and then."""
+        later = float(self.phases["t"][count] - rest["t"][0])
         if self.phases.base is not self._memory or self._at + count + len(rest) > len(self._memory):
-            self._memory, self._at = np.empty(2 * (count + len(rest)), dtype=PHASE), 0
-            put(self.phases[:count], self._memory[:count])
+            kept = copied(self.phases[:count])
+            if self.phases.base is not self._memory or count + len(rest) > len(self._memory):
+                self._memory = np.empty(count + len(rest) + len(rest) // 4, dtype=PHASE)
+            self._at = 0
+            put(kept, self._memory[:count])
         end = self._at + count + len(rest)
-        put(rest, self._memory[end - len(rest) : end])
+        kernel.move_phases(rest, self._memory[end - len(rest) : end], later=later, rows=row)
         self.phases = self._memory[self._at : end]
 
     def _agree(self, here: NDArray[Any], there: NDArray[Any]) -> bool:
@@ -338,10 +346,11 @@ def _joint_before(phases: NDArray[Any], t: float, least: int) -> int | None:
 
 
 def _still(road: Road, start: Place) -> NDArray[Any]:
-    """Return the phases where nothing moves any more: one rest, be it of no time."""
+    """Return the phases where nothing moves any more: one rest, be it of no time; segments count from there."""
     _, seconds = road.rests_between(start.row, road.end)
     phases = np.zeros(1, dtype=PHASE)
-    phases["duration"], phases["flags"], phases["segment"] = seconds.sum(), 1, max(start.row - 1, 0)
+    phases["duration"], phases["flags"] = seconds.sum(), 1
+    phases["segment"] = max(start.row - 1, 0) - start.row & 0xFFFFFFFF  # the row before
     if start.row > road.base:
         phases["s"] = road.segments["length"][start.row - 1 - road.base]
     return phases

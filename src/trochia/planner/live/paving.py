@@ -37,27 +37,29 @@ HISTORIES = (REACH, 512, 4_096)  #: runs before a piece that it is built with, t
 _CHUNK = 16_384  #: moves at a time: their path stays in the cache
 _SAME = 1e-9  #: mm, degree
 _FIRST = 1_024  #: and at the start, so that motion begins soon
+_GROWTH = 4  #: times the moves of the piece before
 
 
-def pave(blocks: Iterable[Program], machine: Machine, *, continuity: int) -> Iterator[Stretch]:
+def pave(blocks: Iterable[Program], machine: Machine, *, continuity: int, room: Room | None = None
+         ) -> Iterator[Stretch]:  # fmt: skip
     """Yield the path of a program whose blocks follow each other; each counts moves and actions from its own start.
 
-    A stretch is gone when the next one is asked for.
+    A stretch is gone when the next one is asked for, but for the coefficients where the room's keeper keeps them.
 
     Raises
     ------
     PlanningError, LimitError
         As :func:`trochia.toolpath.build`.
     """
-    return _Paver(machine, continuity).run(iter(blocks))
+    return _Paver(machine, continuity, room or Room()).run(iter(blocks))
 
 
 class _Paver:
     """Moves in hand: those not yet built, and those before them that are needed to build on."""
 
-    def __init__(self, machine: Machine, continuity: int) -> None:
+    def __init__(self, machine: Machine, continuity: int, room: Room) -> None:
         self._machine, self._continuity = machine, continuity
-        self._held, self._room = Held(), Room()
+        self._held, self._room = Held(), room
         self._program: Program | None = None
         self._splines: NDArray[np.float64] = np.zeros((0, 4, 3))  # those of the moves in hand
         self._actions: list[Action] = []  # `at` counts from the program's start
@@ -69,6 +71,7 @@ class _Paver:
 
     def run(self, blocks: Iterator[Program]) -> Iterator[Stretch]:
         size = _FIRST
+        self._room.reserve(_CHUNK + 4 * REACH, len(self._machine.axes), self._continuity)
         for block in blocks:
             actions, first, count = deque(block.actions), 0, len(block.moves)
             self._begin(block)
@@ -79,7 +82,7 @@ class _Paver:
                 first = end
                 if self._held.end - self._done >= size + 2 * REACH:
                     stretch = self._build(last=False)
-                    size = min(2 * size, _CHUNK) if stretch else 2 * size
+                    size = min(_GROWTH * size, _CHUNK) if stretch else _GROWTH * size
                     if stretch is not None:
                         yield stretch
                 if first == count:
@@ -113,7 +116,8 @@ class _Paver:
             self._level += 1
             program, path, first = self._path(self._starts[self._level])
         moves, base = path.segments["move"], self._starts[self._level]
-        run = None if last else _run_from_end(moves[first:], REACH, least=2 * REACH + 1)
+        ahead = moves[first:first] if last else _runs_from_end(moves[first:], 2 * REACH + 1)
+        run = int(ahead[-REACH]) if len(ahead) > 2 * REACH else None
         if run is None and not last:
             return None
         cut = len(program.moves) + 1 if run is None else run
@@ -121,8 +125,8 @@ class _Paver:
         stretch = self._stretch(program, path, first, end, last=last, base=base)
         if not last:
             self._seam, self._done = _look(path, end), base + cut
-            runs = [_run_from_end(moves[:end], count) for count in HISTORIES]
-            self._starts = [self._starts[-1] if run is None else base + run for run in runs]
+            runs = _runs_from_end(moves[:end], HISTORIES[-1])
+            self._starts = [self._starts[-1] if k > len(runs) else base + int(runs[-k]) for k in HISTORIES]
             self._drop()
         return stretch
 
@@ -173,15 +177,13 @@ class _Paver:
             self._held, self._splines = Held.of(kept.moves, base), kept.splines
 
 
-def _run_from_end(moves: NDArray[np.uint32], count: int, least: int = 0) -> int | None:
-    """Return the ``count``-th last of numbers that rise or stay; None where there are not so many, or ``least``."""
-    look, most = 2 * max(count, least), len(moves)
+def _runs_from_end(moves: NDArray[np.uint32], count: int) -> NDArray[np.uint32]:
+    """Return the last ``count`` or more of numbers that rise or stay, each once; all, where there are not so many."""
+    look, most = 2 * count, len(moves)
     while True:
         runs = _runs(moves[max(most - look, 0) :])
-        if len(runs) >= max(count, least):
-            return int(runs[-count])
-        if look >= most:
-            return None
+        if len(runs) >= count or look >= most:
+            return runs
         look *= 4
 
 

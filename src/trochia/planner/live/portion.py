@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trochia.kernels import path as kernel
-from trochia.planner.live.rows import copied
+from trochia.kernels.layout import PHASE
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from trochia.planner.live.road import Road
+    from trochia.planner.live.rows import Reused
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,14 +48,17 @@ class Portion:
     backwards: bool = False
 
     @classmethod
-    def of(cls, road: Road, phases: NDArray[Any], *, backwards: bool = False) -> Portion:
-        """Return phases (of which there is at least one), counted by a road's rows, with what they need of it."""
+    def of(cls, road: Road, phases: NDArray[Any], *, backwards: bool = False, memory: Reused | None = None) -> Portion:
+        """Return phases (of which there is at least one), counted by a road's rows, with what they need of it.
+
+        Their copy lies in ``memory``, if there is any.
+        """
         first, end = int(phases["segment"][0]), int(phases["segment"][-1]) + 1
-        phases = copied(phases)
-        phases["segment"] -= np.uint32(first)
+        own = np.empty(len(phases), dtype=PHASE) if memory is None else memory.take(len(phases))[: len(phases)]
+        kernel.move_phases(phases, own, rows=-first)
         return cls(
             axes=road.axes, first=first, segments=road.rows(first, end), pool=road.pool, lines=road.lines(first, end),
-            power=road.power(first, end), phases=phases, backwards=backwards,
+            power=road.power(first, end), phases=own, backwards=backwards,
         )  # fmt: skip
 
     @property

@@ -12,7 +12,7 @@ import numpy as np
 
 from trochia.kernels import path as kernel
 from trochia.kernels.layout import SEGMENT
-from trochia.planner.live.rows import put
+from trochia.planner.live.rows import Reused, put
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -24,7 +24,8 @@ if TYPE_CHECKING:
     from trochia.toolpath import Toolpath
 
 
-_ROOM = 3  #: times what is needed at once, that memory is taken for
+_FIRST = 16_384  #: segments that there is room for at least where stretches are built in place
+_ROOM = 2  #: times what is needed at once, that memory is taken for
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -86,14 +87,23 @@ class Road:
         Whether the last row in hand is the program's last.
     segments, pool
         What is in hand, as in a Stretch; ``move`` counts from the program's start.
+
+    Parameters
+    ----------
+    room
+        That the stretches are built in, if they are: then their coefficients are built in the road's own memory.
     """
 
-    def __init__(self, axes: str, stretches: Iterator[Stretch]) -> None:
+    def __init__(self, axes: str, stretches: Iterator[Stretch], room: kernel.Room | None = None) -> None:
         self.axes, self.start = axes, np.zeros(len(axes))
         self.base, self.ended = 0, False
         self.rests: NDArray[np.int64] = np.zeros(0, dtype=np.int64)
         self.seconds: NDArray[np.float64] = np.zeros(0)
-        self._source = stretches
+        self._source, self._in_place = stretches, room is not None
+        if room is not None:
+            room.keeper = self._tail
+        self._count = _FIRST if room is not None else 0  # segments of the longest stretch
+        self._memory = [Reused(dtype) for dtype in (SEGMENT, np.float64, np.uint32, np.float32)]
         self._still = 0
         self._moves: NDArray[Any] | None = None  # of a path that was there as a whole
         self._first = self._end = self._pool_end = 0  # of what is in hand, in the memory it lies in
@@ -112,7 +122,7 @@ class Road:
     def _hold(self, segments: NDArray[Any], pool: NDArray[np.float64]) -> None:
         self._segments, self._pool = segments, pool
         room = len(segments) if self._moves is None else 0
-        self._lines, self._power = np.empty(room, dtype=np.uint32), np.empty(room, dtype=np.float32)
+        self._lines, self._power = self._memory[2].take(room), self._memory[3].take(room)
         self._show()
 
     def _show(self) -> None:
@@ -153,17 +163,27 @@ class Road:
         count, size = len(stretch.segments), len(stretch.pool)
         if not count:
             return True
-        if self._end + count > len(self._segments) or self._pool_end + size > len(self._pool):
+        low = int(stretch.segments["data"][0])
+        at, here = self._pool_end + (low if self._in_place else 0), self._in_place
+        if self._end + count > len(self._segments) or at + size > len(self._pool):
             self._move(count, size)
-        self._pool[self._pool_end : self._pool_end + size] = stretch.pool
+            at, here = self._pool_end, False
+        if not here:
+            self._pool[at : at + size] = stretch.pool
         new = slice(self._end, self._end + count)
         kernel.append(
             stretch.segments, stretch.moves, (self._segments[new], self._lines[new], self._power[new]),
-            shift=self._pool_end - int(stretch.segments["data"][0]), first=stretch.first_move,
+            shift=at - low, first=stretch.first_move,
         )  # fmt: skip
-        self._end, self._pool_end = self._end + count, self._pool_end + size
+        self._end, self._pool_end, self._count = self._end + count, at + size, max(count, self._count)
         self._show()
         return True
+
+    def _tail(self, size: int) -> NDArray[np.float64]:
+        """Return memory for so many coefficients behind those in hand: the next stretch is built there."""
+        if self._pool_end + size > len(self._pool) or self._end + self._count > len(self._segments):
+            self._move(self._count, size)
+        return self._pool[self._pool_end :]
 
     def _move(self, count: int, size: int) -> None:
         """Move to memory with room for so many more segments and coefficients, and the same again."""
@@ -171,7 +191,7 @@ class Road:
         segments, pool = self.segments, self.pool[low:]
         lines, power = self.lines(self.base, self.base + held), self.power(self.base, self.base + held)
         self._first, self._end, self._pool_end = 0, held, len(pool)
-        self._hold(np.empty(_ROOM * (held + count), dtype=SEGMENT), np.empty(_ROOM * (len(pool) + size)))
+        self._hold(self._memory[0].take(_ROOM * (held + count)), self._memory[1].take(_ROOM * (len(pool) + size)))
         put(segments, self.segments)
         self.segments["data"] -= np.uint64(low)
         self.pool[:], self._lines[:held], self._power[:held] = pool, lines, power

@@ -7,10 +7,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from trochia.kernels.layout import PHASE
+from trochia.kernels.path import Room
 from trochia.planner.live.lookahead import Lookahead
 from trochia.planner.live.paving import pave
 from trochia.planner.live.portion import Portion
 from trochia.planner.live.road import Place, Road
+from trochia.planner.live.rows import Reused
 from trochia.planner.live.window import Rules, Speeds
 
 if TYPE_CHECKING:
@@ -20,8 +23,7 @@ if TYPE_CHECKING:
     from trochia.program import Program
 
 
-WINDOW = 300.0  #: how much a window adds, in worst stopping times: long ones cost less to join
-_ROWS = 16_384  #: segments it adds at least
+WINDOW = 150.0  #: how much a window adds, in worst stopping times: long ones cost less to join
 
 
 class StreamPlanner:
@@ -46,19 +48,20 @@ class StreamPlanner:
 
     def __init__(self, blocks: Iterable[Program], machine: Machine, *, profile: str | None = None) -> None:
         self.rules = Rules.of(machine, profile)
-        stretches = pave(blocks, machine, continuity=self.rules.profile.continuity)
-        self.road = Road("".join(axis.name for axis in machine.axes), stretches)
+        room = Room()
+        stretches = pave(blocks, machine, continuity=self.rules.profile.continuity, room=room)
+        self.road = Road("".join(axis.name for axis in machine.axes), stretches, room)
 
     def __iter__(self) -> Iterator[Portion]:
         """Yield portions without a gap from t = 0 to the program's end."""
-        ahead = Lookahead(self.road, self.rules, Place(0, 0.0), 0.0, Speeds(), window=WINDOW, rows=_ROWS)
-        given = 0
+        ahead = Lookahead(self.road, self.rules, Place(0, 0.0), 0.0, Speeds(), window=WINDOW, whole=True)
+        given, memory = 0, Reused(PHASE)
         while True:
             if ahead.safe > given:
-                yield Portion.of(self.road, ahead.phases[given : ahead.safe])
+                yield Portion.of(self.road, ahead.phases[given : ahead.safe], memory=memory)
                 given = ahead.safe
             given -= ahead.forget(ahead.safe_time)
             if not ahead.extend():
                 break
         if ahead.safe > given:
-            yield Portion.of(self.road, ahead.phases[given:])
+            yield Portion.of(self.road, ahead.phases[given:], memory=memory)

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
     from trochia.machine.machine import Machine
     from trochia.planner.live.road import Place, Road
+    from trochia.planner.live.rows import Reused
     from trochia.planner.schedule import Profile, Schedule
 
 _FEW = 256  #: phases there is room for at least; most segments have one or two
@@ -74,6 +75,18 @@ class Rules:
 
 def plan_window(road: Road, rules: Rules, start: Place, end: int, speeds: Speeds) -> NDArray[Any]:
     """Return the phases (k,) from rest at ``start`` to rest before row ``end``: t from 0, segments by its rows."""
+    phases = plan_rows(road, rules, start, end, speeds)
+    kernel.move_phases(phases, phases, rows=start.row)
+    return phases
+
+
+def plan_rows(
+    road: Road, rules: Rules, start: Place, end: int, speeds: Speeds, *, memory: Reused | None = None, room: int = 0
+) -> NDArray[Any]:
+    """Return the phases (k,) from rest at ``start`` to rest before row ``end``: t from 0, segments by rows from there.
+
+    They lie in ``memory``, if there is any; ``room`` is how many there may well be.
+    """
     axes = len(road.axes)
     rows, pool = road.rows(start.row, end), road.pool[:]
     if speeds != Speeds() or rules.limits.segment_time > 0.0 or start.s > 0.0:
@@ -88,11 +101,11 @@ def plan_window(road: Road, rules: Rules, start: Place, end: int, speeds: Speeds
         where, seconds = where[ahead], seconds[ahead]
     path = Toolpath(axes=road.axes, start=np.zeros(axes), segments=rows, pool=pool)
     schedule: Schedule = rules.profile(path, rules.limits, Rests(segments=where, seconds=seconds, times={}))
-    blocks = list(schedule.phases(2 * len(rows) + _FEW))
+    size = max(2 * len(rows), room) + _FEW
+    blocks = list(schedule.phases(size, None if memory is None else memory.take))
     phases = blocks[0] if len(blocks) == 1 else joined(blocks)
     if start.s > 0.0:
         phases["s"][phases["segment"] == 0] += start.s
-    phases["segment"] += np.uint32(start.row)
     return phases
 
 
