@@ -10,10 +10,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from trochia.planner import PROFILES, plan
+from trochia.planner import PROFILES, corners, path_of, plan
 from trochia.planner.live import StreamPlanner, paving, stream
 from trochia.program import MOVE, Dwell, MoveKind, Program, Spindle
-from trochia.toolpath import build
 
 KINDS = ("walk", "wave", "zig-zag", "hatch", "long lines")
 DRAWN = st.tuples(st.sampled_from(KINDS), st.integers(1, 600), st.integers(0, 2**16))
@@ -26,6 +25,7 @@ def _small():
         patch.setattr(paving, "_FIRST", 32)
         patch.setattr(paving, "_CHUNK", 64)
         patch.setattr(paving, "REACH", 40)
+        patch.setattr(corners, "MOST", 24)
         patch.setattr(stream, "WINDOW", 8.0)
         yield
 
@@ -80,7 +80,7 @@ def machine_of(motion):
 @given(drawn=DRAWN, sizes=st.lists(st.integers(7, 300), min_size=1, max_size=3))
 def test_a_stream_is_the_whole(motion, profile, drawn, sizes):
     machine, program = machine_of(motion), program_of(*drawn)
-    path = build(program, machine, continuity=PROFILES[profile].continuity)
+    path = path_of(program, machine, PROFILES[profile])
     whole = plan(path, machine, program=program, profile=profile)
     portions = list(StreamPlanner(blocks_of(program, sizes), machine, profile=profile))
     if not portions:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trochia.analysis.shaped import deviation
-from trochia.planner import PROFILES, Trajectory, profile_of
+from trochia.planner import PROFILES, Trajectory, path_of, profile_of
 from trochia.planner import plan as plan_motion
 from trochia.toolpath import Measure, Toolpath, build, measure_program
 
@@ -124,7 +124,7 @@ def make(program: Program, machine: Machine, *, profile: str | None = None) -> P
         Name of a velocity profile; without it the machine's own, else the planner's default.
     """
     name = profile_of(machine, profile)
-    path = build(program, machine, continuity=PROFILES[name].continuity)
+    path = path_of(program, machine, PROFILES[name])
     trajectory = plan_motion(path, machine, program=program, profile=name)
     return Plan(
         program=program,

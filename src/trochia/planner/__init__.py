@@ -5,6 +5,7 @@ A velocity profile is one file and one row of :data:`PROFILES`.
 
 from trochia.kernels.layout import PHASE
 from trochia.planner.binding import Binding
+from trochia.planner.corners import path_of
 from trochia.planner.limits import Limits
 from trochia.planner.plan import PROFILES, plan, profile_of
 from trochia.planner.rests import Rests, rests_of
@@ -23,6 +24,7 @@ __all__ = [
     "Schedule",
     "Shaping",
     "Trajectory",
+    "path_of",
     "plan",
     "profile_of",
     "rests_of",

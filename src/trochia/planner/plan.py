@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from trochia.errors import LimitError
+from trochia.planner.corners import paced
 from trochia.planner.limits import Limits
 from trochia.planner.rests import rests_of
 from trochia.planner.s_curve import SCurveSchedule
@@ -63,7 +61,7 @@ def plan(path: Toolpath, machine: Machine, *, program: Program, profile: str = "
     profile = profile_of(machine, profile)
     limits = Limits.of(machine, motors=PROFILES[profile].by_curves)
     rests = rests_of(program, machine, path)
-    schedule = PROFILES[profile](_paced(path, limits), limits, rests) if len(path) else None
+    schedule = PROFILES[profile](paced(path, limits), limits, rests) if len(path) else None
     still = sum(rests.times.values())
     shaping = None if schedule is None else Shaping.of(machine, limits)
     duration = (still if schedule is None else schedule.duration) + (shaping.delay if shaping else 0.0)
@@ -71,12 +69,3 @@ def plan(path: Toolpath, machine: Machine, *, program: Program, profile: str = "
         program=program, path=path, limits=limits, profile=profile, schedule=schedule,
         times={"motion": duration - still} | rests.times, duration=duration, shaping=shaping,
     )  # fmt: skip
-
-
-def _paced(path: Toolpath, limits: Limits) -> Toolpath:
-    """Return the path with no segment faster than the drive takes it: at most its length over the least time."""
-    if not limits.segment_time > 0.0:
-        return path
-    segments = path.segments.copy()
-    np.minimum(segments["speed_limit"], segments["length"] / limits.segment_time, out=segments["speed_limit"])
-    return replace(path, segments=segments)

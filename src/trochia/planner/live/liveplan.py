@@ -111,7 +111,7 @@ class LivePlan:
         """Return the live motion of a program that is planned as its blocks come (see ``StreamPlanner``)."""
         rules = Rules.of(machine, profile)
         axes = "".join(axis.name for axis in machine.axes)
-        return cls(Road(axes, pave(blocks, machine, continuity=rules.profile.continuity)), rules)
+        return cls(Road(axes, pave(blocks, machine, rules.profile)), rules)
 
     @property
     def rules(self) -> Rules:

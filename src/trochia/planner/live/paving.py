@@ -17,11 +17,11 @@ import numpy as np
 
 from trochia.errors import PlanningError
 from trochia.kernels.path import Room
+from trochia.planner.corners import path_of
 from trochia.planner.live.held import Held
 from trochia.planner.live.road import Stretch
 from trochia.planner.rests import rests_of
 from trochia.program import MoveKind, Program, Spindle
-from trochia.toolpath import build
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from trochia.machine.machine import Machine
+    from trochia.planner.schedule import Profile
     from trochia.program import Action
     from trochia.toolpath import Toolpath
 
@@ -40,7 +41,7 @@ _FIRST = 1_024  #: and at the start, so that motion begins soon
 _GROWTH = 4  #: times the moves of the piece before
 
 
-def pave(blocks: Iterable[Program], machine: Machine, *, continuity: int, room: Room | None = None
+def pave(blocks: Iterable[Program], machine: Machine, profile: Profile, *, room: Room | None = None
          ) -> Iterator[Stretch]:  # fmt: skip
     """Yield the path of a program whose blocks follow each other; each counts moves and actions from its own start.
 
@@ -49,16 +50,16 @@ def pave(blocks: Iterable[Program], machine: Machine, *, continuity: int, room: 
     Raises
     ------
     PlanningError, LimitError
-        As :func:`trochia.toolpath.build`.
+        As :func:`trochia.planner.corners.path_of`.
     """
-    return _Paver(machine, continuity, room or Room()).run(iter(blocks))
+    return _Paver(machine, profile, room or Room()).run(iter(blocks))
 
 
 class _Paver:
     """Moves in hand: those not yet built, and those before them that are needed to build on."""
 
-    def __init__(self, machine: Machine, continuity: int, room: Room) -> None:
-        self._machine, self._continuity = machine, continuity
+    def __init__(self, machine: Machine, profile: Profile, room: Room) -> None:
+        self._machine, self._profile = machine, profile
         self._held, self._room = Held(), room
         self._program: Program | None = None
         self._splines: NDArray[np.float64] = np.zeros((0, 4, 3))  # those of the moves in hand
@@ -71,7 +72,7 @@ class _Paver:
 
     def run(self, blocks: Iterator[Program]) -> Iterator[Stretch]:
         size = _FIRST
-        self._room.reserve(_CHUNK + 4 * REACH, len(self._machine.axes), self._continuity)
+        self._room.reserve(_CHUNK + 4 * REACH, len(self._machine.axes), self._profile.continuity)
         for block in blocks:
             actions, first, count = deque(block.actions), 0, len(block.moves)
             self._begin(block)
@@ -140,7 +141,7 @@ class _Paver:
         start = self._program.start if base == held.base else held.since(base - 1)["target"][0].copy()
         program = replace(self._program, start=start, moves=moves, actions=tuple(actions), splines=self._splines)
         program = _own_splines(program, 0) if len(self._splines) else program
-        path = build(program, self._machine, continuity=self._continuity, room=self._room)
+        path = path_of(program, self._machine, self._profile, room=self._room)
         return program, path, bisect_left(path.segments["move"], max(self._done - base, 0))
 
     def _fits(self, path: Toolpath, first: int) -> bool:

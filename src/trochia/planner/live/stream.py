@@ -43,13 +43,13 @@ class StreamPlanner:
     Raises
     ------
     LimitError
-        When there is no such profile; while iterating also as :func:`trochia.toolpath.build`.
+        When there is no such profile; while iterating also as :func:`trochia.planner.path_of`.
     """
 
     def __init__(self, blocks: Iterable[Program], machine: Machine, *, profile: str | None = None) -> None:
         self.rules = Rules.of(machine, profile)
         room = Room()
-        stretches = pave(blocks, machine, continuity=self.rules.profile.continuity, room=room)
+        stretches = pave(blocks, machine, self.rules.profile, room=room)
         self.road = Road("".join(axis.name for axis in machine.axes), stretches, room)
 
     def __iter__(self) -> Iterator[Portion]:

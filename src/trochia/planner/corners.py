@@ -1,0 +1,128 @@
+"""Corners that cost more time passed than stopped at.  In: a Program, its machine, a profile.  Out: a Toolpath.
+
+What a corner is worth is first decided beside it alone, where the path is made.  But how fast motion comes to it, and
+goes on, depends on what lies around.  Between two stops of a path, motion does not depend on the rest of it: so each
+such *section* of few moves is planned by itself, blended and with a stop at every corner, and takes the quicker form.
+A section says nothing of another, and so a path that is built piece by piece comes out the same.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from trochia.planner.limits import Limits
+from trochia.planner.rests import Rests
+from trochia.program import Dwell, MoveKind, PathMode
+from trochia.toolpath import Toolpath, build
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from trochia.kernels.path import Room
+    from trochia.machine.machine import Machine
+    from trochia.planner.schedule import Profile
+    from trochia.program import Program
+
+MOST = 48  #: moves of a section that is weighed: longer ones gain from passing, and a piece built by itself knows them
+SAME = 1e-10  #: part of a time by which a section is slower only by rounding
+_ROUNDS = 4  #: a joint between two sections may leave more room once one of them stops
+
+
+def path_of(program: Program, machine: Machine, profile: Profile, *, room: Room | None = None) -> Toolpath:
+    """Return the path of a program for a profile, with stops where passing the corners between two stops is slower.
+
+    Parameters
+    ----------
+    room
+        As in :func:`trochia.toolpath.build`.
+
+    Raises
+    ------
+    PlanningError, LimitError
+        As :func:`trochia.toolpath.build`; LimitError also where the machine lacks what the profile needs.
+    """
+    path = build(program, machine, continuity=profile.continuity, room=room)
+    for _ in range(_ROUNDS):
+        slower = _slower(program, machine, profile, path)
+        if not slower.any():
+            break
+        moves = program.moves.copy()
+        moves["path_mode"][slower] = PathMode.EXACT_PATH
+        program = replace(program, moves=moves)
+        path = build(program, machine, continuity=profile.continuity, room=room)
+    return path
+
+
+def paced(path: Toolpath, limits: Limits) -> Toolpath:
+    """Return the path with no segment faster than the drive takes it: at most its length over the least time."""
+    if not limits.segment_time > 0.0:
+        return path
+    segments = path.segments.copy()
+    np.minimum(segments["speed_limit"], segments["length"] / limits.segment_time, out=segments["speed_limit"])
+    return replace(path, segments=segments)
+
+
+def _slower(program: Program, machine: Machine, profile: Profile, path: Toolpath) -> NDArray[np.bool_]:
+    """Return which moves are blended in a section that takes less time with stops (moves,)."""
+    blended = _blended(program, machine)
+    slower = np.zeros(len(blended), dtype=np.bool_)
+    firsts, bounds = _sections(path, len(blended))
+    weighed = (np.diff(bounds) <= MOST) & (np.diff(np.concatenate([[0], np.cumsum(blended)])[bounds]) > 0)
+    if not weighed.any():
+        return slower
+    owner = np.repeat(np.arange(len(firsts)), np.diff(np.append(firsts, len(path))))
+    kept = weighed[owner]
+    limits = Limits.of(machine, motors=profile.by_curves)
+    number = np.cumsum(weighed) - 1
+    passing = _times(replace(path, segments=path.segments[kept]), number[owner[kept]], profile, limits)
+    begins, ends = bounds[:-1][weighed], bounds[1:][weighed]
+    stopping = _stopping(program, machine, profile, np.stack([begins, ends]), limits)
+    for begin, end in zip(*(edge[passing > stopping * (1.0 + SAME)] for edge in (begins, ends)), strict=True):
+        slower[begin:end] = blended[begin:end]
+    return slower
+
+
+def _blended(program: Program, machine: Machine) -> NDArray[np.bool_]:
+    """Return which moves may be blended with others (moves,)."""
+    mode = program.moves["path_mode"]
+    return (mode == PathMode.BLEND) | ((mode == PathMode.BLEND_DEFAULT) & (machine.path_tolerance > 0.0))
+
+
+def _sections(path: Toolpath, moves: int) -> tuple[NDArray[np.intp], NDArray[np.int64]]:
+    """Return the first segment of each section (k,), and the moves between which they lie (k + 1,)."""
+    firsts = np.flatnonzero(np.concatenate([[True], path.segments["stop"][:-1] != 0])[: len(path)])
+    return firsts, np.append(path.segments["move"][firsts].astype(np.int64), moves)
+
+
+def _times(path: Toolpath, owner: NDArray[np.intp], profile: Profile, limits: Limits) -> NDArray[np.float64]:
+    """Return the time each section takes (k,) [s]; ``owner`` says to which each segment belongs, in order."""
+    nothing = Rests(segments=np.zeros(0, dtype=np.uint64), seconds=np.zeros(0), times={})
+    times = np.zeros(int(owner[-1]) + 1)
+    for phases in profile(paced(path, limits), limits, nothing).phases(1 << 16):
+        times += np.bincount(owner[phases["segment"]], phases["duration"], len(times))
+    return times
+
+
+def _stopping(program: Program, machine: Machine, profile: Profile, edges: NDArray[np.int64],
+              limits: Limits) -> NDArray[np.float64]:  # fmt: skip
+    """Return the time of each section, from the first of its moves up to the second (2, k), with stops (k,) [s]."""
+    begins, sizes = edges[0], edges[1] - edges[0] + 1  # each led to by a move, which is not counted
+    heads = np.concatenate([[0], np.cumsum(sizes)])
+    inside = np.arange(heads[-1]) - np.repeat(heads[:-1], sizes)
+    rows = np.repeat(begins - 1, sizes) + inside
+    moves = program.moves[np.maximum(rows, 0)]
+    moves["path_mode"][moves["path_mode"] != PathMode.EXACT_STOP] = PathMode.EXACT_PATH
+    leading = inside == 0
+    moves["kind"][leading], moves["path_mode"][leading] = MoveKind.RAPID, PathMode.EXACT_STOP
+    if begins[0] == 0:
+        moves["target"][0] = program.start
+    rests = tuple(Dwell(at=at, line=0, seconds=0.0) for head in heads[:-1].tolist() for at in (head, head + 1))
+    alone = replace(program, moves=moves, actions=rests)
+    path = build(alone, machine, continuity=profile.continuity)
+    move = path.segments["move"]
+    kept = ~leading[move]
+    owner = np.searchsorted(heads, move[kept], side="right") - 1
+    return _times(replace(path, segments=path.segments[kept]), owner, profile, limits)
