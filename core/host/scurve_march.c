@@ -16,6 +16,9 @@ static const double LEAST_JERK = 1e-6; /* part of its jerk that turning must lea
 static const double GRAZED = 1e-9;
 static const double CLOSE_TIME = 1e-5;
 static const double LOWER = 0.035; /* the same, where that leaves less than the a there is */
+/* Of what a stretch leaves: so much a may be there where it is come to, and by rounding a little more where it is left
+ * to itself.  Else motion that is let in with all of it would have to be arrested at once, and crawl through. */
+static const double LET_IN = 1.0 - 1e-7, ROUNDED = 1.0 + 1e-11;
 enum { STEPS = 7 };
 
 static double place(const trochia_track *track, int64_t i, double rem) {
@@ -94,13 +97,13 @@ static double arrest_most(const trochia_stretch *stretch, double v, double a, do
 trochia_arrest trochia_arrest_from(const trochia_track *track, int64_t i, double rem, double v, double a,
                                    trochia_leg *legs, uint64_t room, uint64_t *made) {
     trochia_arrest out = {.margin = INFINITY, .v = v, .s = place(track, i, rem), .stretch = i};
-    double slack = SLACK[track->by > 0];
+    double slack = SLACK[track->by > 0], spare = ROUNDED;
     while (a > 0.0) {
         const trochia_stretch *stretch = &track->stretches[i];
         double high, time, before = rem, jerk = arrest_leg(stretch, &rem, v, a, &high, &time);
         double most = arrest_most(stretch, v, a, jerk, high, time);
-        if (most * SUMMED < a)
-            out.margin = most / a - 1.0;
+        if (most * spare < a)
+            out.margin = trochia_smaller(out.margin, most * spare / a - 1.0);
         out.margin = trochia_smaller(out.margin, stretch->ceiling * slack / v - 1.0);
         if (stretch->free < INFINITY)
             out.margin = trochia_smaller(out.margin, jerk * stretch->along_j - LEAST_JERK);
@@ -131,6 +134,7 @@ trochia_arrest trochia_arrest_from(const trochia_track *track, int64_t i, double
         }
         i += track->by;
         rem = track->stretches[i].length;
+        spare = track->stretches[i].free < INFINITY ? LET_IN : SUMMED;
     }
     return out;
 }
