@@ -201,7 +201,7 @@ static int climb_to(const trochia_track *track, int64_t i, trochia_run *run, dou
     if (run->a > b.a * SUMMED) {
         double j = trochia_jerk_left(stretch, high, run->a), time = (run->a - b.a) / j;
         double v = trochia_speed_after(run->v, run->a, -j, time);
-        if (!(j > 0.0) || v > high || trochia_acceleration_left(stretch, v) < run->a)
+        if (!(j > 0.0) || v > high || arrest_most(stretch, run->v, run->a, j, v, time) * ROUNDED < run->a)
             return 0;
         if (!leg(track, i, run, -j, time))
             return 0;
