@@ -2,7 +2,6 @@
 #include "host/scurve_march.h"
 
 static const double ALIKE = 1e-12;
-static const double CRAWL = 0.5; /* of the ceiling: at less, even speed through a bend is looked at again */
 
 typedef struct {
     trochia_course course;
@@ -14,7 +13,6 @@ typedef struct {
     double t;
     int64_t at;  /* stretch that motion has come to the start of */
     double v, a; /* there */
-    double rem;  /* what is left of that stretch; 0: all of it */
 } trochia_writer;
 
 /* Whether motion from a knot on, at a time since, is that of another. */
@@ -129,7 +127,6 @@ static void follow(trochia_writer *w, const trochia_leave *leave, int64_t node) 
 static void join(trochia_writer *w, const trochia_arrest *arrest, const trochia_leave *leave) {
     const trochia_stretch *stretches = w->course.stretches;
     int64_t node = (int64_t)stretches[arrest->stretch].birth;
-    w->rem = 0.0;
     put_even(w, arrest->s, leave->s, arrest->v, arrest->stretch);
     follow(w, leave, node);
     w->at = node;
@@ -143,23 +140,6 @@ static void join(trochia_writer *w, const trochia_arrest *arrest, const trochia_
     w->at = end + 1;
 }
 
-/* Where a had to fall to 0 in a bend entered with more of it than its own speed leaves, the rest of the stretch is sped
- * up in anew: an even speed there could be a crawl. */
-static int begins_anew(trochia_writer *w, const trochia_track *ahead, const trochia_run *run) {
-    const trochia_leg *last = &run->legs[run->count - 1];
-    if (!(w->a > 0.0) || w->rem > 0.0 || !run->count || last->a != 0.0 || last->j != 0.0)
-        return 0;
-    double rem = trochia_exit(ahead, w->at) - last->from;
-    if (!(rem > 0.0) || last->v > CRAWL * w->course.stretches[w->at].ceiling)
-        return 0;
-    for (int k = 0; k + 1 < run->count; k++)
-        put_leg(w, &run->legs[k]);
-    w->rem = rem;
-    w->v = last->v;
-    w->a = 0.0;
-    return 1;
-}
-
 /* Through the stretch motion has come to, or on to the next node. */
 static void advance(trochia_writer *w) {
     const trochia_course *course = &w->course;
@@ -168,11 +148,10 @@ static void advance(trochia_writer *w) {
     trochia_run run;
     trochia_arrest arrest;
     int joins, barrier;
-    double rem = w->rem > 0.0 ? w->rem : here->length;
     if (w->a == 0.0 && trochia_is_still(here, w->v))
-        run = (trochia_run){.v = w->v, .begin = rem, .rem = rem};
+        run = (trochia_run){.v = w->v, .rem = here->length};
     else
-        trochia_climb(&ahead, w->at, rem, w->v, w->a, &run);
+        trochia_climb(&ahead, w->at, w->v, w->a, &run);
     double time = trochia_search(&ahead, course, w->at, &run, &arrest, &joins, &barrier);
     trochia_leave leave = trochia_leave_at(course, arrest.stretch, arrest.v);
     trochia_run at = run;
@@ -181,13 +160,10 @@ static void advance(trochia_writer *w) {
     if (!joins && arrest.stretch == w->at)
         joins = leave.s < trochia_exit(&ahead, w->at) || (run.a == 0.0 && trochia_is_barrier(&ahead, w->at));
     if (!joins) {
-        if (begins_anew(w, &ahead, &run))
-            return;
         for (int k = 0; k < run.count; k++)
             put_leg(w, &run.legs[k]);
         w->a = run.a;
         w->v = run.v;
-        w->rem = 0.0;
         w->at++;
         return;
     }

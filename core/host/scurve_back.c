@@ -204,9 +204,9 @@ static void pass_stretch(trochia_course *course, int64_t b, trochia_mover *m) {
     trochia_arrest arrest;
     int joins, barrier = 0;
     if (m->closing || (m->a == 0.0 && trochia_is_still(here, m->v)))
-        run = (trochia_run){.v = m->v, .a = m->a, .begin = here->length, .rem = here->length};
+        run = (trochia_run){.v = m->v, .a = m->a, .rem = here->length};
     else
-        trochia_climb(&back, m->i, here->length, m->v, m->a, &run);
+        trochia_climb(&back, m->i, m->v, m->a, &run);
     double time = trochia_search(&back, NULL, m->i, &run, &arrest, &joins, &barrier);
     /* a later stretch's ceiling, once come to, forbids more until a is 0 */
     barrier |= time < run.time && arrest.stretch < m->i && arrest.v > stretches[arrest.stretch].ceiling * BELOW;

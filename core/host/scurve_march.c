@@ -220,11 +220,11 @@ static int climb_to(const trochia_track *track, int64_t i, trochia_run *run, dou
     return run->v < stretch->ceiling * (1.0 - CLOSE);
 }
 
-void trochia_climb(const trochia_track *track, int64_t i, double rem, double v, double a, trochia_run *run) {
+void trochia_climb(const trochia_track *track, int64_t i, double v, double a, trochia_run *run) {
     const trochia_stretch *stretch = &track->stretches[i];
     run->v = v;
     run->a = a;
-    run->begin = run->rem = rem;
+    run->rem = stretch->length;
     run->time = 0.0;
     run->count = 0;
     for (int k = 0; k < STEPS && run->rem > 0.0 && run->v < stretch->ceiling * (1.0 - CLOSE); k++)
@@ -237,7 +237,7 @@ void trochia_climb(const trochia_track *track, int64_t i, double rem, double v, 
 }
 
 void trochia_run_at(const trochia_track *track, int64_t i, const trochia_run *run, double time, trochia_run *out) {
-    double rem = run->begin;
+    double rem = track->stretches[i].length;
     if (time >= run->time) {
         out->v = run->v;
         out->a = run->a;

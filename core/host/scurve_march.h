@@ -33,7 +33,6 @@ typedef struct {
 
 /* Motion through one stretch. */
 typedef struct {
-    double begin;           /* way left in the stretch where it begins */
     double v, a, rem, time; /* where the legs have got to, and how long they take */
     int count, climbs;      /* legs in all, and those before a begins to fall to 0 */
     trochia_leg legs[TROCHIA_RUN_LEGS];
@@ -103,8 +102,8 @@ double trochia_time_over(double v, double a, double j, double rem, double most);
 trochia_arrest trochia_arrest_from(const trochia_track *track, int64_t i, double rem, double v, double a,
                                    trochia_leg *legs, uint64_t room, uint64_t *made);
 
-/* Speeds up through what is left of stretch i as hard as it allows by itself. */
-void trochia_climb(const trochia_track *track, int64_t i, double rem, double v, double a, trochia_run *run);
+/* Speeds up through stretch i as hard as it allows by itself. */
+void trochia_climb(const trochia_track *track, int64_t i, double v, double a, trochia_run *run);
 
 /* The state at a time of a run: its v, a and rem. */
 void trochia_run_at(const trochia_track *track, int64_t i, const trochia_run *run, double time, trochia_run *out);
