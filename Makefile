@@ -106,6 +106,7 @@ soak: setup-test
 	$(BIN)/python tests/soak/kills.py --count 200 --seed $(SOAK_SEED)
 	$(BIN)/python tests/soak/faults.py --count $(FAULTS) --seed $(SOAK_SEED) --jobs $(JOBS)
 	$(BIN)/python tests/soak/faults.py --count 2000 --seed $(SOAK_SEED) --jobs $(JOBS) --image
+	$(BIN)/python tests/soak/dead_hosts.py --count 200 --seed $(SOAK_SEED)
 	$(BIN)/python tests/soak/steps_on_chip.py --steps $(STEPS) --seed $(SOAK_SEED) --jobs $(JOBS)
 	$(BIN)/python tests/soak/compare_gcode.py --count 10000 --seed $(SOAK_SEED) --jobs $(JOBS)
 
