@@ -34,6 +34,7 @@ HEADERS = [
     "shared/protocol.h",
     "shared/frame.h",
     "shared/pulses.h",
+    "shared/slots.h",
     "shared/timeline.h",
     "host/link.h",
     "host/timeline.h",

@@ -29,7 +29,7 @@ def _load(name):
     return module
 
 
-for _name in ("steady_spans", "random_spans", "spoilt_line", "faulty_session"):
+for _name in ("steady_spans", "chip_motion", "random_spans", "spoilt_line", "faulty_session"):
     _load(_name)
 chip_program, board_image = _load("chip_fixtures").chip_program, _load("chip_fixtures").board_image
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trochia.kernels.link import AT_REST, PART, SPAN
+from trochia.kernels.link import AT_REST, PART, PIXEL, PIXELS, SPAN
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -30,13 +30,16 @@ def span(
     number: int = 0,
     rest: bool = True,
     power: int = 0,
+    pixels: tuple[tuple[int, int], ...] = (),
 ) -> bytes:
     head = np.zeros((), SPAN)
     head["duration"], head["slew"], head["number"], head["flags"] = ticks, slew, number, AT_REST * rest
     head["power"] = power
+    head["flags"] |= PIXELS * len(pixels)
     for motor in parts:
         head["motors"] |= 1 << motor
-    return head.tobytes() + b"".join(parts[motor].tobytes() for motor in sorted(parts))
+    light = np.array(list(pixels), PIXEL).tobytes()
+    return head.tobytes() + b"".join(parts[motor].tobytes() for motor in sorted(parts)) + light
 
 
 def steady(

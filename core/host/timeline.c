@@ -5,11 +5,26 @@
 typedef struct {
     trochia_timeline *line;
     const uint8_t *spans;
-    int64_t bytes, done, capacity, made, slices;
-    trochia_pulse_at *pulses;
+    int64_t bytes, done, slices;
+    trochia_executed *out;
     int64_t tick;
     uint8_t backwards;
 } reader;
+
+/* Reads bytes of a span; returns whether they are there. */
+static int get(reader *r, void *to, size_t size) {
+    if (r->done + (int64_t)size > r->bytes)
+        return 0;
+    memcpy(to, r->spans + r->done, size);
+    r->done += (int64_t)size;
+    return 1;
+}
+
+static void next_pixel(reader *r) {
+    trochia_pixel pixel;
+    if (r->line->pixels && get(r, &pixel, sizeof pixel))
+        trochia_timeline_pixel(r->line, &pixel);
+}
 
 /* Takes the next span up; returns 1, 0 at the end, -1 for bytes that are no span. */
 static int take_up(reader *r) {
@@ -18,34 +33,40 @@ static int take_up(reader *r) {
     trochia_timeline *line = r->line;
     uint32_t start = line->loaded ? line->left : 0;
     uint8_t back = line->backwards;
+    r->done += (int64_t)sizeof(trochia_pixel) * (line->pixels ? line->pixels - 1 : 0); /* cut off */
     if (r->done == r->bytes)
         return 0;
-    if (r->done + (int64_t)sizeof span > r->bytes)
+    if (!get(r, &span, sizeof span))
         return -1;
-    memcpy(&span, r->spans + r->done, sizeof span);
-    r->done += (int64_t)sizeof span;
     trochia_timeline_load(line, &span);
     for (uint8_t i = 0; i < TROCHIA_TIMELINE_MOTORS; i++) {
         if (!(span.motors >> i & 1))
             continue;
-        if (r->done + (int64_t)sizeof part > r->bytes)
+        if (!get(r, &part, sizeof part))
             return -1;
-        memcpy(&part, r->spans + r->done, sizeof part);
-        r->done += (int64_t)sizeof part;
         trochia_timeline_part(line, i, &part, start);
         uint8_t bit = (uint8_t)(1u << i);
         back = part.steps.flags & TROCHIA_SEGMENT_BACKWARDS ? (uint8_t)(back | bit) : (uint8_t)(back & ~bit);
     }
-    const uint8_t four[4] = {(uint8_t)(back ^ line->backwards), span.power, span.flags, span.outputs};
+    const uint8_t four[4] = {(uint8_t)(back ^ line->backwards), span.flags, span.outputs, 0};
     trochia_timeline_act(line, (uint16_t)start, four);
     line->backwards = back;
-    return 1;
+    return r->done + (int64_t)sizeof(trochia_pixel) * (line->pixels - 1) > r->bytes ? -1 : 1;
 }
 
 static void pulse(reader *r, uint8_t pins) {
-    if (r->made < r->capacity)
-        r->pulses[r->made] = (trochia_pulse_at){.tick = r->tick, .pins = pins >> 1, .backwards = r->backwards};
-    r->made++;
+    trochia_executed *out = r->out;
+    if (out->made < out->pulse_room)
+        out->pulses[out->made] = (trochia_pulse_at){.tick = r->tick, .pins = pins >> 1, .backwards = r->backwards};
+    out->made++;
+}
+
+static void light(reader *r) {
+    trochia_executed *out = r->out;
+    int64_t tick = r->slices * TROCHIA_SLICE + r->line->light_at;
+    if (out->lit < out->light_room)
+        out->lights[out->lit] = (trochia_light_at){.tick = tick, .power = r->line->lit};
+    out->lit++;
 }
 
 /* A grid's slots, the first of which is due now; returns its length. */
@@ -77,6 +98,7 @@ static void row(reader *r, const uint8_t *entry) {
 /* What the interrupt does with the ring, until it is empty. */
 static void empty(reader *r) {
     trochia_timeline *line = r->line;
+    line->shown = line->lights;
     while (line->tail != line->head) {
         uint8_t entry[8], size = 8;
         for (uint8_t i = 0; i < 8; i++)
@@ -104,12 +126,13 @@ static void hold(reader *r) {
         r->line->rest = span.flags & TROCHIA_AT_REST;
         for (uint8_t motors = span.motors; motors; motors &= (uint8_t)(motors - 1))
             at += (int64_t)sizeof(trochia_part);
+        at += (int64_t)sizeof(trochia_pixel) * (span.flags / TROCHIA_PIXEL);
     }
 }
 
-int64_t trochia_timeline_pulses(trochia_timeline *line, const uint8_t *spans, int64_t bytes, int64_t brake,
-                                int64_t capacity, trochia_pulse_at *pulses) {
-    reader r = {.line = line, .spans = spans, .bytes = bytes, .capacity = capacity, .pulses = pulses};
+int32_t trochia_timeline_run(trochia_timeline *line, const uint8_t *spans, int64_t bytes, int64_t brake,
+                             trochia_executed *done) {
+    reader r = {.line = line, .spans = spans, .bytes = bytes, .out = done};
     uint8_t told = TROCHIA_FULL;
     for (uint8_t i = 0; i < TROCHIA_TIMELINE_MOTORS; i++)
         line->motors[i].pin = (uint8_t)(2u << i);
@@ -120,7 +143,14 @@ int64_t trochia_timeline_pulses(trochia_timeline *line, const uint8_t *spans, in
     while (told != TROCHIA_ENDED && told != TROCHIA_CROWDED) {
         line->brake = brake > 0 && r.slices >= brake;
         uint8_t head = line->head;
+        uint8_t lights = line->lights;
         told = trochia_timeline_fill(line);
+        if (told == TROCHIA_LIT) {
+            if (lights != line->lights)
+                light(&r);
+            next_pixel(&r);
+            continue;
+        }
         if (told == TROCHIA_FULL && line->head != head)
             continue; /* it was not full yet: only a turn was over */
         r.slices += told == TROCHIA_SLICED;
@@ -135,5 +165,5 @@ int64_t trochia_timeline_pulses(trochia_timeline *line, const uint8_t *spans, in
     }
     trochia_timeline_end(line);
     empty(&r);
-    return r.made;
+    return 0;
 }

@@ -22,7 +22,7 @@ enum trochia_sizes {
 };
 
 enum trochia_frame_type {
-    TROCHIA_SPAN = 1,    /* trochia_span, then a trochia_part for each motor it moves */
+    TROCHIA_SPAN = 1,    /* trochia_span, a trochia_part for each motor it moves, trochia_pixels */
     TROCHIA_BEGIN = 2,   /* trochia_begin: an empty queue, stream time 0; only at rest */
     TROCHIA_GO = 3,      /* run through what is held */
     TROCHIA_CUT = 4,     /* trochia_cut: a span ends earlier, those after it are dropped */
@@ -39,8 +39,9 @@ enum trochia_frame_type {
 };
 
 enum trochia_span_flag {
-    TROCHIA_AT_REST = 1,    /* every motor is at rest where it ends */
-    TROCHIA_SET_OUTPUTS = 2 /* `outputs` are put at its start */
+    TROCHIA_AT_REST = 1,     /* every motor is at rest where it ends */
+    TROCHIA_SET_OUTPUTS = 2, /* `outputs` are put at its start */
+    TROCHIA_PIXEL = 4        /* times how many trochia_pixels there are */
 };
 
 enum trochia_state {
@@ -67,7 +68,7 @@ typedef struct {
     uint32_t duration; /* stream time, 1 to 2^23 */
     uint16_t number;   /* one more than the span's before */
     uint16_t slew;     /* of the rate, 2^-15 a slice */
-    uint8_t power;     /* of the beam at full rate */
+    uint8_t power;     /* of the beam at full rate, up to the first pixel */
     uint8_t flags;     /* trochia_span_flag */
     uint8_t motors;    /* a bit for each that makes steps */
     uint8_t outputs;
@@ -78,6 +79,12 @@ typedef struct {
     uint32_t first;             /* from the span's start to the first step [2^-8 ticks] */
     trochia_tick_segment steps; /* count may be 0 */
 } trochia_part;
+
+/* The beam's power changes within a span. */
+typedef struct {
+    uint8_t after; /* the pixel before it, or the span's start [2^7 ticks of stream time] */
+    uint8_t power; /* of the beam at full rate from then on */
+} trochia_pixel;
 
 typedef struct {
     uint8_t epoch;  /* told in status */
@@ -126,7 +133,8 @@ typedef struct {
     uint8_t board[12];
     uint8_t session;  /* of the hello */
     uint8_t expected; /* sequence number of the next order; not 0 where the session's number was in use already */
-    uint8_t reserved[2];
+    uint8_t payload;  /* greatest it takes */
+    uint8_t reserved;
 } trochia_answer;
 
 typedef struct {

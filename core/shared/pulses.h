@@ -24,7 +24,8 @@
 #define TROCHIA_TAIL(line) ((line)->tail)
 #define TROCHIA_PUBLISH(line, i) ((line)->head = (uint8_t)(i))
 #define TROCHIA_RING_INSIDE 1
-enum trochia_timeline_size { TROCHIA_TIMELINE_MOTORS = 6 };
+#define TROCHIA_LIGHT(line, at, to) trochia_light_keep(line, at)
+enum trochia_timeline_size { TROCHIA_TIMELINE_MOTORS = 6, TROCHIA_LIGHTS = 15 };
 #endif
 
 #ifndef TROCHIA_BEND /* a chip has them in its own instructions, or these */
@@ -32,15 +33,16 @@ enum trochia_timeline_size { TROCHIA_TIMELINE_MOTORS = 6 };
 #define TROCHIA_PLACE trochia_row_place
 #define TROCHIA_CLEAR trochia_row_clear
 #define TROCHIA_PACK trochia_slots_pack
+#define TROCHIA_STEPS trochia_timeline_steps
 #define TROCHIA_ROW(motor, row) 0       /* what it can do by itself of trochia_timeline_row at full rate: whether all */
 #define TROCHIA_ROW_BRISK(motor, row) 0 /* and at more than half of it */
 #endif
 
 enum trochia_entry {
     TROCHIA_MARK = 0,  /* a slice ends; what follows: nothing */
-    TROCHIA_ACT = 1,   /* a span begins; what follows: motors that turn round, power, flags and outputs of the span */
+    TROCHIA_ACT = 1,   /* a span begins; what follows: motors that turn round, flags and outputs of the span, nothing */
     TROCHIA_END = 2,   /* motion has ended */
-    TROCHIA_LIGHT = 3, /* the rate is full from here on, or no longer */
+    TROCHIA_FULLY = 3, /* what follows: whether the rate is full from here on */
     TROCHIA_GRID = 128 /* and as many bytes of slots as the lower bits say */
 };
 
@@ -70,6 +72,7 @@ typedef struct {
     uint32_t left;    /* of the span, from the slice's start [ticks of stream time] */
     uint32_t stream;  /* stream time at the slice's start */
     uint32_t hand;    /* of the spans that wait; see legend */
+    uint32_t pixel;   /* when the power changes next, from the slice's start [ticks of stream time] */
     uint32_t stretch; /* real ticks a tick of stream time [2^-8]; 256 at full rate */
     uint16_t slew;    /* of the span */
     uint16_t rate;
@@ -81,31 +84,31 @@ typedef struct {
     uint8_t brisk;   /* says so, and costs less */
     uint8_t full;    /* the rate is */
     uint8_t backwards;
-    uint8_t brake, rest; /* being stopped; the last span held ends at rest */
+    uint8_t pixels, power, lit; /* changes of power to come in the span, the next one's, what it is before that */
+    uint8_t brake, rest;        /* being stopped; the last span held ends at rest */
     uint8_t crowded;
     uint8_t dense;  /* the slice's last chunk is still to come */
     uint8_t marked; /* slices whose end is in the ring, counted on */
     uint8_t loaded;
     uint8_t head;
 #ifdef TROCHIA_RING_INSIDE
+    uint16_t light_at;     /* when the power changes last, from the slice's start [ticks] */
+    uint8_t lights, shown; /* changes of power so far, and those the pins have seen */
     uint8_t tail;
     uint8_t ring[256];
 #endif
 } trochia_timeline;
 
-/* One motor's steps of one interval, on their way into slots. */
-typedef struct trochia_row {
-    uint32_t real;     /* of the first [2^-8 ticks] */
-    uint32_t interval; /* [2^-8 ticks] */
-    int32_t bound;     /* steps due from here on are not put [2^-8 ticks of stream time] */
-    uint16_t until;    /* nor those from here on [ticks], unless it is the span's or the slice's last chunk */
-    uint8_t base;      /* place of the slice's first slot in the ring */
-    uint8_t free;      /* first slot that is the motor's */
-    uint8_t stop;      /* first slot that is nobody's */
-    uint8_t pin;
-    uint8_t last;
-    uint16_t extra; /* of the time line */
-} trochia_row;
+#ifdef TROCHIA_RING_INSIDE
+/* Notes a change of power at a real tick of the slice, as long as no more than a chip's ring holds wait. */
+static inline uint8_t trochia_light_keep(trochia_timeline *line, uint16_t at) {
+    if ((uint8_t)(line->lights - line->shown) >= TROCHIA_LIGHTS)
+        return 0;
+    line->light_at = at;
+    line->lights++;
+    return 1;
+}
+#endif
 
 static inline uint8_t trochia_timeline_space(const trochia_timeline *line) {
     return (uint8_t)(TROCHIA_TAIL(line) - line->head - 1);
@@ -154,13 +157,15 @@ static inline uint8_t trochia_timeline_put(trochia_timeline *line, uint16_t delt
     return head;
 }
 
-/* An entry that is no pulse, at a real time of the slice; four bytes that mean nothing follow. */
+/* An entry that is no pulse, at a real time of the slice; what follows is whether the rate is full, and nothing. */
 static inline void trochia_timeline_special(trochia_timeline *line, uint16_t real, uint8_t kind) {
     uint16_t delta = trochia_timeline_delta(line, real, TROCHIA_SPECIAL);
-    TROCHIA_PUBLISH(line, (uint8_t)(trochia_timeline_put(line, delta, kind, 0) + 4));
+    uint8_t head = trochia_timeline_put(line, delta, kind, 0);
+    TROCHIA_RING(line, head) = line->full;
+    TROCHIA_PUBLISH(line, (uint8_t)(head + 4));
 }
 
-/* The start of a span: motors that turn round, power, flags and outputs. */
+/* The start of a span: motors that turn round, flags, outputs; nothing. */
 static inline void trochia_timeline_act(trochia_timeline *line, uint16_t at, const uint8_t *four) {
     uint16_t delta = trochia_timeline_delta(line, trochia_real(line, at), TROCHIA_SPECIAL);
     uint8_t head = trochia_timeline_put(line, delta, TROCHIA_ACT, 0);
@@ -208,6 +213,20 @@ static inline uint8_t trochia_motor_runs(const trochia_timeline *line, const tro
     return run->interval < CLOSE && trochia_real_fine(line, run->interval) < CLOSE;
 }
 
+/* How many steps, the first of them due now, are due within some ticks, at most 128 [2^-8 ticks]. */
+static inline uint8_t trochia_steps_within(uint32_t interval, uint32_t ticks) {
+    uint8_t more = 0;
+    interval <<= 6;
+    for (uint8_t steps = 64; steps; steps >>= 1) {
+        if (interval < ticks) {
+            ticks -= interval;
+            more = (uint8_t)(more + steps);
+        }
+        interval >>= 1;
+    }
+    return (uint8_t)(more + 1);
+}
+
 /* One motor alone, up to a limit, as long as there is room. */
 static inline void trochia_timeline_alone(trochia_timeline *line, trochia_motor *motor, int32_t limit) {
     while (motor->on && motor->due < limit && trochia_timeline_space(line) >= 12) {
@@ -217,8 +236,8 @@ static inline void trochia_timeline_alone(trochia_timeline *line, trochia_motor 
         uint8_t count = run->phase < TROCHIA_LONGEST_RUN ? run->phase : TROCHIA_LONGEST_RUN;
         if (interval >= (uint32_t)TROCHIA_LONG)
             count = 1;
-        while (count > 1 && (int32_t)(due + (uint8_t)(count - 1) * interval) >= limit)
-            count = count >> 1;
+        if (count > 1 && (int32_t)(due + (uint8_t)(count - 1) * interval) >= limit)
+            count = trochia_steps_within(interval, (uint32_t)limit - due);
         if (!count)
             count = 1; /* the last step of its segment */
         uint16_t delta = trochia_timeline_delta(line, (uint16_t)(real >> 8), line->apart);
@@ -235,164 +254,6 @@ static inline void trochia_timeline_alone(trochia_timeline *line, trochia_motor 
         trochia_motor_on(motor, count, motor->due + trochia_steps_ahead(run, count));
         TROCHIA_PUBLISH(line, head);
     }
-}
-
-/* Clears slots from a place of the ring on. */
-static inline void trochia_row_clear(trochia_timeline *line, uint8_t from, uint8_t slots) {
-    (void)line;
-    for (uint8_t i = 0; i < slots; i++)
-        TROCHIA_RING(line, from + i) = 0;
-}
-
-/* Takes slots without pulses together, the first and the last having some; returns how many bytes are left. */
-static inline uint8_t trochia_slots_pack(trochia_timeline *line, uint8_t to, uint8_t from, uint8_t slots) {
-    uint8_t bytes = 0, empty = 0;
-    (void)line;
-    for (uint8_t i = 0; i < slots; i++) {
-        uint8_t pins = TROCHIA_RING(line, from + i);
-        if (!pins) {
-            empty++;
-            continue;
-        }
-        if (empty)
-            TROCHIA_RING(line, to + bytes++) = (uint8_t)(empty << 1 | 1);
-        TROCHIA_RING(line, to + bytes++) = pins;
-        empty = 0;
-    }
-    return bytes;
-}
-
-/* Puts steps into slots, at most `most`, each into its own or the next that is free; returns how many found one.
- * row->real is the next one's then. */
-static inline uint8_t trochia_row_place(trochia_timeline *line, trochia_row *row, uint8_t most) {
-    uint32_t real = row->real;
-    uint8_t made = 0;
-    (void)line;
-    do {
-        uint8_t slot = (uint8_t)(real >> 15);
-        if (slot < row->free)
-            slot = row->free;
-        if (slot >= row->stop)
-            break;
-        TROCHIA_RING(line, row->base + slot) |= row->pin;
-        row->free = (uint8_t)(slot + 1);
-        real += row->interval;
-        made++;
-    } while (made < most && (uint16_t)(real >> 8) < row->until);
-    row->real = real;
-    return made;
-}
-
-/* Where the next step of a motor is in real time, and how far apart its steps are; returns whether that is the same. */
-static inline uint8_t trochia_row_scale(const trochia_timeline *line, const trochia_motor *motor, trochia_row *row) {
-    row->real = (uint32_t)motor->due;
-    row->interval = motor->run.interval;
-    if (line->full)
-        return row->interval < (uint32_t)TROCHIA_LONG;
-    row->real = trochia_real_fine(line, row->real);
-    row->interval = trochia_real_fine(line, row->interval);
-    return 0;
-}
-
-/* One motor's steps of a chunk. */
-static inline void trochia_timeline_row(trochia_timeline *line, trochia_motor *motor, trochia_row *row) {
-    trochia_segment_run *run = &motor->run;
-    if ((line->full && TROCHIA_ROW(motor, row)) || (line->brisk && TROCHIA_ROW_BRISK(motor, row)))
-        return;
-    while (motor->on && motor->due < row->bound) {
-        uint8_t same = trochia_row_scale(line, motor, row);
-        if (!row->last && (uint16_t)(row->real >> 8) >= row->until)
-            return;
-        uint8_t most = run->phase;
-        if (most == 0 || run->interval >= (uint32_t)TROCHIA_LONG)
-            most = 1;
-        uint8_t made = TROCHIA_PLACE(line, row, most);
-        if (!made) {
-            line->crowded |= row->last;
-            return;
-        }
-        int32_t due = motor->due;
-        trochia_motor_on(motor, made, same ? (int32_t)row->real : due + trochia_steps_ahead(run, made));
-    }
-}
-
-/* The steps of all motors in the next slots, from the first that is due; returns whether those up to `limit` are all
- * there.  Where there is no room, nothing is done. */
-static inline uint8_t trochia_timeline_chunk(trochia_timeline *line, int32_t first, uint16_t limit) {
-    enum { HALF = TROCHIA_SLOT / 2 };
-    if (trochia_timeline_space(line) < TROCHIA_CHUNK + TROCHIA_SPARE + 24)
-        return 0;
-    uint8_t start = (uint8_t)((uint16_t)(line->last + line->apart + HALF - 1) / TROCHIA_SLOT);
-    uint8_t slot = (uint8_t)(trochia_real(line, (uint16_t)(first >> 8)) / TROCHIA_SLOT);
-    if (slot > start)
-        start = slot;
-    uint16_t end = trochia_real(line, limit);
-    uint8_t stop = (uint8_t)((uint16_t)(end + TROCHIA_SLOT - 1) / TROCHIA_SLOT), last = 1;
-    if (start > stop + TROCHIA_BEHIND)
-        line->crowded = 1;
-    if (line->crowded)
-        return 0;
-    if (stop < start)
-        stop = start;
-    if ((uint8_t)(stop - start) > TROCHIA_CHUNK) {
-        stop = (uint8_t)(start + TROCHIA_CHUNK);
-        end = (uint16_t)(stop * TROCHIA_SLOT);
-        last = 0;
-    } else {
-        stop = (uint8_t)(stop + TROCHIA_SPARE);
-    }
-    uint8_t from = (uint8_t)(line->head + 4), used = start;
-    TROCHIA_CLEAR(line, from, (uint8_t)(stop - start));
-    trochia_row row = {.until = end, .base = (uint8_t)(from - start), .stop = stop, .last = last, .extra = line->extra};
-    row.bound = (int32_t)limit << 8;
-    for (uint8_t i = 0; i < TROCHIA_TIMELINE_MOTORS; i++) {
-        if (!line->motors[i].on)
-            continue;
-        row.free = start;
-        row.pin = line->motors[i].pin;
-        trochia_timeline_row(line, &line->motors[i], &row);
-        if (row.free > used)
-            used = row.free;
-    }
-    line->dense = !last && used != start;
-    if (used == start)
-        return last;
-    uint8_t slots = (uint8_t)(used - start), before = 0;
-    while (!TROCHIA_RING(line, from + before))
-        before++;
-    uint16_t at = (uint16_t)((start + before) * TROCHIA_SLOT + HALF);
-    uint16_t delta = trochia_timeline_delta(line, at, line->apart);
-    slots = (uint8_t)(slots - before);
-    uint8_t bytes = TROCHIA_PACK(line, from, (uint8_t)(from + before), slots);
-    trochia_timeline_put(line, delta, TROCHIA_GRID | bytes, 0);
-    line->last = (uint16_t)(line->last + (uint16_t)((uint8_t)(slots - 1) * TROCHIA_SLOT));
-    TROCHIA_PUBLISH(line, (uint8_t)(from + ((bytes + 3) & ~3)));
-    return last && !line->crowded;
-}
-
-/* Steps due before `limit` [ticks]; returns whether all found room.  Takes turns with others: a chunk at a time. */
-static inline uint8_t trochia_timeline_steps(trochia_timeline *line, uint16_t limit) {
-    if (line->dense) /* several have steps, and more than the last chunk took */
-        return trochia_timeline_chunk(line, 0, limit);
-    int32_t bound = (int32_t)limit << 8, first = bound;
-    trochia_motor *near = line->motors;
-    uint8_t count = 0;
-    for (uint8_t i = 0; i < TROCHIA_TIMELINE_MOTORS; i++) {
-        trochia_motor *motor = &line->motors[i];
-        if (!motor->on || motor->due >= bound)
-            continue;
-        near = motor;
-        count++;
-        if (motor->due < first)
-            first = motor->due;
-    }
-    if (count == 0)
-        return 1;
-    if (count == 1 && trochia_motor_runs(line, near)) {
-        trochia_timeline_alone(line, near, bound);
-        return !(near->on && near->due < bound);
-    }
-    return trochia_timeline_chunk(line, first, limit);
 }
 
 #endif

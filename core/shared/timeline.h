@@ -11,14 +11,15 @@
 #ifndef TROCHIA_TIMELINE_H
 #define TROCHIA_TIMELINE_H
 
-#include "shared/pulses.h"
+#include "shared/slots.h"
 
 enum trochia_fill {
-    TROCHIA_FULL = 0,   /* no more to do for now */
-    TROCHIA_NEED = 1,   /* the next span, by trochia_timeline_load; or trochia_timeline_end */
-    TROCHIA_ENDED = 2,  /* the rate is 0, or the stream has ended: END is on its way */
-    TROCHIA_SLICED = 3, /* a slice was finished */
-    TROCHIA_CROWDED = 4 /* steps of a motor are closer than slots: what is on its way is the last */
+    TROCHIA_FULL = 0,    /* no more to do for now */
+    TROCHIA_NEED = 1,    /* the next span, by trochia_timeline_load; or trochia_timeline_end */
+    TROCHIA_ENDED = 2,   /* the rate is 0, or the stream has ended: END is on its way */
+    TROCHIA_SLICED = 3,  /* a slice was finished */
+    TROCHIA_CROWDED = 4, /* steps of a motor are closer than slots: what is on its way is the last */
+    TROCHIA_LIT = 5      /* the power has been changed; if `pixels` is not 0, the next by trochia_timeline_pixel */
 };
 
 /* Slew times span [2^-15], as hand counts it. */
@@ -48,9 +49,10 @@ static inline uint8_t trochia_timeline_slice(trochia_timeline *line) {
     if (line->length == 0)
         return 0;
     uint8_t full = rate == TROCHIA_FULL_RATE;
-    if (full != line->full)
-        trochia_timeline_special(line, 0, TROCHIA_LIGHT);
+    uint8_t was = line->full;
     line->full = full;
+    if (full != was)
+        trochia_timeline_special(line, 0, TROCHIA_FULLY);
     line->brisk = !line->full && rate > TROCHIA_FULL_RATE / 2;
     if (line->brisk)
         line->extra = (uint16_t)((((uint32_t)TROCHIA_SLICE << 16) - 1) / line->length - 65536u);
@@ -67,8 +69,17 @@ static inline void trochia_timeline_load(trochia_timeline *line, const trochia_s
     line->left = start + span->duration;
     line->slew = span->slew;
     line->number = span->number;
+    line->pixels = (uint8_t)(span->flags / TROCHIA_PIXEL + 1); /* its own power is the first */
+    line->pixel = start;
+    line->power = span->power;
     line->hand -= trochia_hand(span->slew, span->duration);
     line->loaded = 1;
+}
+
+/* The next of the span's pixels. */
+static inline void trochia_timeline_pixel(trochia_timeline *line, const trochia_pixel *pixel) {
+    line->pixel += (uint32_t)(pixel->after * TROCHIA_SLOT);
+    line->power = pixel->power;
 }
 
 /* Begins at rest at stream time 0, with nothing held. */
@@ -82,7 +93,7 @@ static inline void trochia_timeline_begin(trochia_timeline *line) {
     line->brisk = 0;
     line->length = line->last = line->slew = 0;
     line->apart = TROCHIA_SPECIAL;
-    line->brake = line->loaded = line->crowded = line->dense = 0;
+    line->brake = line->loaded = line->crowded = line->dense = line->pixels = line->lit = 0;
     line->rest = 1;
 }
 
@@ -111,13 +122,23 @@ static inline uint8_t trochia_timeline_fill(trochia_timeline *line) {
     if (line->length == 0 && !trochia_timeline_slice(line))
         return TROCHIA_ENDED;
     uint16_t limit = line->left < line->length ? (uint16_t)line->left : line->length;
-    if (!trochia_timeline_steps(line, limit) || trochia_timeline_space(line) < 20)
+    uint8_t lights = line->pixels && line->pixel < limit;
+    if (lights &&
+        (line->power == line->lit || TROCHIA_LIGHT(line, trochia_real(line, (uint16_t)line->pixel), line->power))) {
+        line->lit = line->power;
+        line->pixels--;
+        return TROCHIA_LIT;
+    }
+    if (!TROCHIA_STEPS(line, limit) || trochia_timeline_space(line) < 20)
         return line->crowded ? TROCHIA_CROWDED : TROCHIA_FULL;
+    if (lights)
+        return TROCHIA_FULL; /* what remembers changes of power is */
     if (line->left <= line->length)
         return TROCHIA_NEED;
     for (uint8_t i = 0; i < TROCHIA_TIMELINE_MOTORS; i++)
         line->motors[i].due -= (int32_t)line->length << 8;
     line->left -= line->length;
+    line->pixel -= line->length;
     line->stream += line->length;
     trochia_timeline_special(line, TROCHIA_SLICE, TROCHIA_MARK);
     line->last = (uint16_t)(line->last - TROCHIA_SLICE);

@@ -17,6 +17,7 @@
 #define BOARD_STEPS PINA
 #define BEAM_DUTY OCR4BL
 #define BEAM_MODE TCCR4A
+#define BEAM_COUNT TCNT4L
 #define BEAM_ON (1 << COM4B1 | 1 << WGM40)
 
 #ifndef __ASSEMBLER__
@@ -42,7 +43,7 @@ static inline void board_setup(void) {
     PCMSK0 = 1 << 4 | 1 << 5 | 1 << 6;
     PCMSK2 = 1 << 0 | 1 << 1 | 1 << 2 | 1 << 3 | 1 << 7;
     PCICR = 1 << PCIE0 | 1 << PCIE2;
-    TCCR4B = 1 << WGM42 | 1 << CS41;
+    TCCR4B = 1 << WGM42 | 1 << CS40;
 }
 
 static inline void board_enable(uint8_t on) {
@@ -75,11 +76,12 @@ static inline void board_outputs(uint8_t levels) {
         PORTE &= (uint8_t)~(1 << 3);
 }
 
-/* The beam's power, 0 … 255, by fast PWM of timer 4 on D7. */
+/* The beam's power, 0 … 255, by fast PWM of timer 4 on D7; a period begins with it, so that it is there at once. */
 static inline void board_beam(uint8_t power) {
     if (power) {
         OCR4B = power;
         TCCR4A = BEAM_ON;
+        TCNT4 = 255;
     } else {
         TCCR4A = 0; /* the pin is the port's again, and that is low */
     }

@@ -15,6 +15,8 @@
 #define BOARD_INPUTS 6
 #define BOARD_OUTPUTS 2
 #define BOARD_QUEUE 512
+#define BEAM_PORT PORTB
+#define BEAM_PIN 2
 #define BOARD_COILS 1 /* a pulse is a call of coils_step */
 
 #ifndef __ASSEMBLER__

@@ -12,11 +12,12 @@
 #define BOARD_MOTORS 4
 #define BOARD_INPUTS 6
 #define BOARD_OUTPUTS 2
-#define BOARD_QUEUE 624
+#define BOARD_QUEUE 600
 #define BOARD_STEPS PIND
 #define BOARD_FOURTH 1 /* bit of an entry */
 #define BEAM_DUTY OCR2A
 #define BEAM_MODE TCCR2A
+#define BEAM_COUNT TCNT2
 #define BEAM_ON (1 << COM2A1 | 1 << WGM21 | 1 << WGM20)
 
 #ifndef __ASSEMBLER__
@@ -36,7 +37,7 @@ static inline void board_setup(void) {
     PCMSK0 = 1 << 1 | 1 << 2;
     PCMSK1 = 1 << 0 | 1 << 1 | 1 << 2 | 1 << 5;
     PCICR = 1 << PCIE0 | 1 << PCIE1;
-    TCCR2B = 1 << CS21;
+    TCCR2B = 1 << CS20;
 }
 
 static inline void board_enable(uint8_t on) {
@@ -62,11 +63,12 @@ static inline void board_outputs(uint8_t levels) {
     PORTC = (uint8_t)((PORTC & ~(3 << 3)) | (levels & 3) << 3);
 }
 
-/* The beam's power, 0 … 255, by fast PWM of timer 2 on D11. */
+/* The beam's power, 0 … 255, by fast PWM of timer 2 on D11; a period begins with it, so that it is there at once. */
 static inline void board_beam(uint8_t power) {
     if (power) {
         OCR2A = power;
         TCCR2A = BEAM_ON;
+        TCNT2 = 255;
     } else {
         TCCR2A = 0; /* the pin is the port's again, and that is low */
     }

@@ -3,7 +3,9 @@
  * Compare match A of timer 1, which runs freely.  It is armed from its own value, so a late interrupt makes the next
  * step no later; a compare value that has gone by when it is set would wait for a whole turn, so such an entry is
  * served at once.  Where the ring is empty it switches itself off.  What it needs is in registers of its own
- * (registers.h).  Entries that are no pulses go to C, line_act(), unless a slice ends or only the beam changes. */
+ * (registers.h).  Entries that are no pulses go to C, line_act(), unless a slice ends or the beam has to go out.
+ *
+ * The beam's power changes at its own ticks, by compare match B, from a ring behind the other (act.c). */
 #include <avr/io.h>
 #include "board.h"
 
@@ -28,6 +30,9 @@
 #define AFTER 44   /* ticks from here to the next match, so that pulses are 64 apart */
 #define SOON 20
 #define TOO_LATE 4 /* times 256 ticks */
+#define FULLY 3    /* TROCHIA_FULLY */
+#define BEAMS 16   /* as in motion_parts.h */
+#define GONE 0xf0  /* times 256 ticks ahead: that is ticks ago */
 
 #ifdef BOARD_COILS /* a pulse is a call, and over when it returns */
     .macro raise
@@ -76,6 +81,26 @@
     reti
     .endm
 
+    /* a power above 0 if it may shine; spends r31 and, where that may not be, the power */
+    .macro beam power
+    sbis MAY_SHINE
+    clr \power
+#ifdef BEAM_MODE
+    clr r31
+    cpse \power, r31
+    ldi r31, BEAM_ON
+    sts BEAM_DUTY, \power
+    sts BEAM_MODE, r31
+    ldi r31, 255 /* a period begins: the duty counts from here on */
+    sts BEAM_COUNT, r31
+#else
+    sbrc \power, 7
+    sbi _SFR_IO_ADDR(BEAM_PORT), BEAM_PIN
+    sbrs \power, 7
+    cbi _SFR_IO_ADDR(BEAM_PORT), BEAM_PIN
+#endif
+    .endm
+
     .text
     .global TIMER1_COMPA_vect
 TIMER1_COMPA_vect:
@@ -110,6 +135,7 @@ reload:
 load:
     nop
     last r30
+acted:
     mov r30, TAIL
     ldi r31, hi8(step_ring)
     lds NOW_LOW, step_head
@@ -166,7 +192,7 @@ dry:
     lower
 missed: /* what is in the ring stays there and counts as not made; motion_work() sees to the rest */
     lds r30, TIMSK1
-    andi r30, ~(1 << OCIE1A)
+    andi r30, ~(1 << OCIE1A | 1 << OCIE1B)
     sts TIMSK1, r30
     clr r30
     sts step_on, r30
@@ -219,43 +245,29 @@ act:
     subi r30, -2
     ldi r31, hi8(step_ring)
     ld NOW_LOW, Z
-    dec NOW_LOW
-    breq begins
-    brpl whole
+    mov r31, NOW_LOW
+    cpi r31, FULLY
+    breq fully
+    tst NOW_LOW
+    brne whole
     sts slice_since, AT_LOW /* a mark */
     sts slice_since + 1, AT_HIGH
     lds r30, slice_done
     inc r30
     sts slice_done, r30
-    lds r30, silent_slices
-    lds r31, silent_slices + 1
-    adiw r30, 1
-    sts silent_slices + 1, r31
-    sts silent_slices, r30
 done:
     ldi r30, 8
     add TAIL, r30
-    rjmp load
-begins: /* a span that only changes the beam, if anything */
-    subi r30, -4
+    rjmp acted
+fully: /* the rate is full, or no longer: then the beam goes out */
+    subi r30, -2
     ldi r31, hi8(step_ring)
     ld NOW_LOW, Z
-    sbrs NOW_LOW, 7
-    rjmp whole
-#ifdef BEAM_MODE
-    dec r30
-    ld r30, Z
-    sts span_power, r30
-    ldi r31, BEAM_ON
-    sbis MAY_SHINE
-    clr r30
-    tst r30
-    brne 1f
-    clr r31
-1:  sts BEAM_DUTY, r30
-    sts BEAM_MODE, r31
+    tst NOW_LOW
+    brne whole
+    cbi MAY_SHINE
+    beam NOW_LOW
     rjmp done
-#endif
 whole:
     movw r30, KEPT
     push r0
@@ -272,3 +284,43 @@ whole:
     pop r0
     movw KEPT, r30
     rjmp load
+
+    .global TIMER1_COMPB_vect
+TIMER1_COMPB_vect: /* never within the other, so it uses its registers */
+    in STATUS, _SFR_IO_ADDR(SREG)
+    movw KEPT, r30
+shine:
+    in r30, _SFR_IO_ADDR(GPIOR2)
+    ldi r31, hi8(step_ring + 256)
+    ldd NOW_LOW, Z + 2 * BEAMS
+    sts span_power, NOW_LOW
+    beam NOW_LOW
+    inc r30
+    andi r30, BEAMS - 1
+    out _SFR_IO_ADDR(GPIOR2), r30
+    lds NOW_LOW, beam_head
+    cp NOW_LOW, r30
+    breq none
+    ldi r31, hi8(step_ring + 256)
+    ld NOW_LOW, Z
+    ldd NOW_HIGH, Z + BEAMS
+    sts OCR1BH, NOW_HIGH
+    sts OCR1BL, NOW_LOW
+    lds r30, TCNT1L
+    lds r31, TCNT1H
+    sub NOW_LOW, r30
+    sbc NOW_HIGH, r31
+    mov r30, NOW_HIGH
+    cpi r30, GONE
+    brsh gone
+shone:
+    return
+gone: /* its tick has gone by: now */
+    ldi r30, 1 << OCF1B
+    out _SFR_IO_ADDR(TIFR1), r30
+    rjmp shine
+none:
+    lds r30, TIMSK1
+    andi r30, ~(1 << OCIE1B)
+    sts TIMSK1, r30
+    rjmp shone

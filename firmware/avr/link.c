@@ -8,17 +8,18 @@
 #include "registers.h"
 
 #define TROCHIA_FRAME_KNOWN
-enum { TROCHIA_FRAME = sizeof(trochia_span) + BOARD_MOTORS * sizeof(trochia_part) + 4 };
+enum { PARTS = BOARD_MOTORS > 4 ? BOARD_MOTORS : 4, PAYLOAD = sizeof(trochia_span) + PARTS * sizeof(trochia_part) };
+enum { TROCHIA_FRAME = PAYLOAD + 4 };
 #include "shared/frame.h"
 
 #ifndef BAUD
 #define BAUD 115200
 #endif
 
-enum { BYTES_A_TURN = 6, SEND = 64, RECEIVE = 128 };
+enum { BYTES_A_TURN = 16, SEND = 64, RECEIVE = 128 };
 enum { SEND_ACK = 1, SEND_STATUS = 2, SEND_ANSWER = 4 };
 
-extern volatile uint16_t silent_slices;
+extern uint16_t silent_slices;
 
 volatile uint8_t received[RECEIVE], received_head; /* line_io.S */
 static uint8_t received_tail;
@@ -44,55 +45,62 @@ static uint16_t never_used(void) {
     return (uint16_t)(at - &_end);
 }
 
-static void put(trochia_frame_out *out, const void *payload, uint8_t size) {
-    const uint8_t *bytes = payload;
-    for (uint8_t i = 0; i < size; i++) {
-        trochia_frame_put(out, bytes[i]);
-        if (i % 16 == 15)
-            motion_work(); /* it may not wait that long */
-    }
-}
+/* Where a payload is made: it is stuffed where it stands, because no byte of a frame goes further back. */
+#define MADE (sending + 3)
 
-static void answer(trochia_frame_out *out) {
-    trochia_answer told = {.schema = SCHEMA,
-                           .clock = F_CPU,
-                           .room = BOARD_QUEUE,
-                           .free = never_used(),
-                           .motors = BOARD_MOTORS,
-                           .inputs = BOARD_INPUTS,
-                           .outputs = BOARD_OUTPUTS,
-                           .reset = reset_by,
-                           .session = session,
-                           .expected = expected};
-    memcpy(told.board, board_name, sizeof told.board);
-    trochia_frame_begin(out, sending, 0, TROCHIA_ANSWER);
-    put(out, &told, sizeof told);
-}
-
-static void send(void) {
+/* Makes a frame of the payload that stands there, and begins to send it. */
+static void put(uint8_t type, uint8_t size) {
     trochia_frame_out out;
-    if (wanted & SEND_ANSWER) {
-        wanted &= (uint8_t)~SEND_ANSWER;
-        answer(&out);
-    } else if (wanted & SEND_STATUS) {
-        trochia_status status;
-        wanted = 0;
-        motion_tell(&status);
-        status.expected = expected;
-        motion_work();
-        trochia_frame_begin(&out, sending, 0, TROCHIA_STATUS);
-        put(&out, &status, sizeof status);
-    } else {
-        trochia_ack ack = {.expected = expected, .epoch = motion_epoch(), .room = motion_room()};
-        wanted = 0;
-        trochia_frame_begin(&out, sending, 0, TROCHIA_ACK);
-        put(&out, &ack, sizeof ack);
+    trochia_frame_begin(&out, sending, 0, type);
+    for (uint8_t i = 0; i < size; i++) {
+        trochia_frame_put(&out, MADE[i]);
+        if (i % 16 == 15)
+            motion_fill(); /* it may not wait that long */
     }
     send_end = trochia_frame_end(&out);
     send_next = 1;
     UCSR0A = 1 << U2X0 | 1 << TXC0; /* clears the flag */
     UCSR0B |= 1 << TXCIE0;
     UDR0 = sending[0];
+}
+
+static void answer(void) {
+    trochia_answer *told = (trochia_answer *)MADE;
+    told->schema = SCHEMA;
+    told->clock = F_CPU;
+    told->room = BOARD_QUEUE;
+    told->free = never_used();
+    told->motors = BOARD_MOTORS;
+    told->inputs = BOARD_INPUTS;
+    told->outputs = BOARD_OUTPUTS;
+    told->reset = reset_by;
+    told->session = session;
+    told->expected = expected;
+    told->payload = PAYLOAD;
+    told->reserved = 0;
+    memcpy(told->board, board_name, sizeof told->board);
+}
+
+static void send(void) {
+    if (wanted & SEND_ANSWER) {
+        wanted &= (uint8_t)~SEND_ANSWER;
+        answer();
+        put(TROCHIA_ANSWER, sizeof(trochia_answer));
+    } else if (wanted & SEND_STATUS) {
+        trochia_status *status = (trochia_status *)MADE;
+        wanted = 0;
+        motion_tell(status);
+        status->expected = expected;
+        motion_fill();
+        put(TROCHIA_STATUS, sizeof *status);
+    } else {
+        trochia_ack *ack = (trochia_ack *)MADE;
+        wanted = 0;
+        ack->expected = expected;
+        ack->epoch = motion_epoch();
+        ack->room = motion_room();
+        put(TROCHIA_ACK, sizeof *ack);
+    }
 }
 
 static void hello(const uint8_t *payload) {

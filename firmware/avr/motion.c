@@ -3,12 +3,11 @@
 #include <string.h>
 
 enum {
-    ONLY_BEAM = 128, /* flag of an entry: neither directions nor outputs change; line_isr.S knows it */
-    LEAD = 1600,     /* ticks from GO to the first slice */
-    ROOM = TROCHIA_CHUNK + TROCHIA_SPARE + 24
+    LEAD = 1600,                              /* ticks from GO to the first slice */
+    ROOM = TROCHIA_CHUNK + TROCHIA_SPARE + 24 /* bytes of the ring; where there are fewer the line has its turn first */
 };
 
-uint8_t step_ring[256] __attribute__((section(".ring,\"aw\",@nobits;")));
+uint8_t step_ring[256 + 3 * BEAMS] __attribute__((section(".ring,\"aw\",@nobits;")));
 volatile uint8_t step_head, step_on;
 trochia_timeline line;
 
@@ -21,8 +20,10 @@ uint16_t silence_most;
 uint8_t state, cause, epoch, enabled, underway, end_put;
 uint32_t caught_at;
 static uint16_t next_number;
-static uint8_t outputs_put, power_put; /* when all that is in the ring has happened */
+static uint8_t outputs_put; /* when all that is in the ring has happened */
 static uint32_t span_duration;
+static uint8_t slice_seen;
+uint16_t silent_slices; /* since the host was heard last */
 
 void motion_setup(void) {
     for (uint8_t i = 0; i < BOARD_MOTORS; i++)
@@ -48,7 +49,9 @@ uint32_t motion_clock(void) {
 }
 
 static void interrupt_off(void) {
-    TIMSK1 &= (uint8_t)~(1 << OCIE1A);
+    ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+        TIMSK1 &= (uint8_t)~(1 << OCIE1A | 1 << OCIE1B);
+    }
 }
 
 static void finish(uint8_t to, uint8_t why) {
@@ -112,7 +115,8 @@ void motion_begin(const trochia_begin *order) {
     epoch = order->epoch;
     queue_clear();
     trochia_timeline_begin(&line);
-    power_put = span_power;
+    span_power = 0;
+    beam_begin();
     next_number = 0;
     cause = TROCHIA_NO_CAUSE;
     state = TROCHIA_LOADING;
@@ -126,7 +130,7 @@ void motion_span(const uint8_t *payload, uint8_t size) {
     if (caught || line.brake)
         return; /* sent before the host knew */
     memcpy(&span, payload, sizeof span);
-    if (size < sizeof span || span.number != next_number || !queue_put(payload, size)) {
+    if (size < sizeof span || size != queue_size(&span) || span.number != next_number || !queue_put(payload, size)) {
         motion_brake(TROCHIA_BAD_SPAN);
         return;
     }
@@ -153,7 +157,6 @@ void motion_cut(const trochia_cut *order) {
     next_number = (uint16_t)(order->number + (order->duration != 0));
     line.rest = order->flags & TROCHIA_AT_REST;
     if (!found) {
-        queue_clear();
         if (order->duration)
             found = line.loaded && line.number == order->number && cut_loaded(order->duration);
         else
@@ -196,13 +199,26 @@ void motion_greet(const trochia_hello *hello) {
     GPIOR1 = (uint8_t)(hello->width + 1);
 }
 
+/* Apart, so that what it needs is on the stack for that time only; likewise take_up. */
+uint8_t __attribute__((noinline)) steps_made(uint16_t limit) {
+    return trochia_timeline_steps(&line, limit);
+}
+
+static void next_pixel(void) {
+    trochia_pixel pixel;
+    if (line.pixels) {
+        queue_get((uint8_t *)&pixel, sizeof pixel);
+        trochia_timeline_pixel(&line, &pixel);
+    }
+}
+
 /* Takes the next span up; returns whether there was one. */
-static uint8_t take_up(void) {
+static uint8_t __attribute__((noinline)) take_up(void) {
     trochia_span span;
     trochia_part part;
     uint32_t start = line.loaded ? line.left : 0;
     uint8_t back = line.backwards;
-    if (!queue_get((uint8_t *)&span, sizeof span))
+    if (!queue_next((uint8_t *)&span, sizeof span))
         return 0;
     trochia_timeline_load(&line, &span);
     span_duration = span.duration;
@@ -216,14 +232,13 @@ static uint8_t take_up(void) {
         else
             back = (uint8_t)(back & ~(1 << i));
     }
-    uint8_t four[4] = {(uint8_t)(back ^ line.backwards), span.power, span.flags & TROCHIA_SET_OUTPUTS, span.outputs};
-    if (!four[0] && (!four[2] || span.outputs == outputs_put))
-        four[2] = ONLY_BEAM;
-    if (four[2] == TROCHIA_SET_OUTPUTS)
+    uint8_t four[4] = {(uint8_t)(back ^ line.backwards), 0, span.outputs, 0};
+    if (span.flags & TROCHIA_SET_OUTPUTS && span.outputs != outputs_put) {
         outputs_put = span.outputs;
-    if (four[2] != ONLY_BEAM || span.power != power_put)
+        four[1] = TROCHIA_SET_OUTPUTS;
+    }
+    if (four[0] | four[1])
         trochia_timeline_act(&line, (uint16_t)start, four);
-    power_put = span.power;
     line.backwards = back;
     return 1;
 }
@@ -237,8 +252,9 @@ static void note_slice(void) {
 }
 
 static void kick(void) {
+    uint16_t at;
     ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
-        uint16_t at = (uint16_t)(TCNT1 + LEAD);
+        at = (uint16_t)(TCNT1 + LEAD);
         isr_pins = 0;
         isr_count = 1;
         isr_at_low = (uint8_t)at;
@@ -249,6 +265,7 @@ static void kick(void) {
         step_on = 1;
         TIMSK1 |= 1 << OCIE1A;
     }
+    beam_kick(at);
 }
 
 void motion_go(void) {
@@ -258,7 +275,7 @@ void motion_go(void) {
     underway = 2; /* the interrupt is still to be started */
     end_put = ended = 0;
     silent_slices = 0;
-    slice_done = line.marked;
+    slice_done = slice_seen = line.marked;
     note_slice();
     slices[(line.marked - 1) & (SLICES - 1)].rate = line.rate;
     ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
@@ -267,20 +284,21 @@ void motion_go(void) {
 }
 
 static void fill(void) {
-    while (!end_put) {
+    do {
         if (line.length == 0 && (uint8_t)(line.marked - slice_done) >= TROCHIA_AHEAD)
             return;
-        uint8_t told = trochia_timeline_fill(&line);
+        uint8_t head = line.head, told = trochia_timeline_fill(&line);
         slices[(told == TROCHIA_SLICED ? line.marked - 1 : line.marked) & (SLICES - 1)].rate = line.rate;
         if (told == TROCHIA_SLICED) {
             note_slice();
+            beam_since = (uint16_t)(beam_since + TROCHIA_SLICE);
             continue;
         }
-        if (told == TROCHIA_CROWDED) {
-            motion_stop(TROCHIA_MISSED);
-            return;
+        if (told == TROCHIA_LIT) {
+            next_pixel();
+            continue;
         }
-        if (told == TROCHIA_FULL && trochia_timeline_space(&line) < ROOM)
+        if (told == TROCHIA_CROWDED || (told == TROCHIA_FULL && line.head == head))
             return;
         if (told == TROCHIA_FULL)
             continue;
@@ -292,7 +310,12 @@ static void fill(void) {
             cause = TROCHIA_LOW;
         trochia_timeline_end(&line);
         end_put = 1;
-    }
+    } while (trochia_timeline_space(&line) >= ROOM && !end_put);
+}
+
+void motion_fill(void) {
+    if (underway && !end_put)
+        fill();
 }
 
 void motion_work(void) {
@@ -308,9 +331,16 @@ void motion_work(void) {
     }
     if (!underway)
         return;
+    uint8_t now = slice_done;
+    silent_slices = (uint16_t)(silent_slices + (uint8_t)(now - slice_seen));
+    slice_seen = now;
     if (silence_most && silent_slices > silence_most)
         motion_brake(TROCHIA_SILENCE);
-    fill();
+    motion_fill();
+    if (line.crowded) {
+        motion_stop(TROCHIA_MISSED);
+        return;
+    }
     if (underway == 2) {
         underway = 1;
         kick();

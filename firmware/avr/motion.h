@@ -13,6 +13,9 @@ void motion_setup(void);
 /* Goes on with the time line; to be called at least every few hundred microseconds. */
 void motion_work(void);
 
+/* Of that only the time line, with less of the stack: it stops nothing. */
+void motion_fill(void);
+
 /* Ticks since reset. */
 uint32_t motion_clock(void);
 

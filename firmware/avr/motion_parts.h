@@ -9,7 +9,8 @@
 #include "motion.h"
 #include "registers.h"
 
-extern uint8_t step_ring[256]; /* begins at a multiple of 256: line_isr.S relies on it */
+enum { BEAMS = 16 };
+extern uint8_t step_ring[256 + 3 * BEAMS]; /* begins at a multiple of 256; the beam's is behind it (line_isr.S) */
 extern volatile uint8_t step_head, step_on;
 
 #define TROCHIA_TIMELINE_MOTORS BOARD_MOTORS
@@ -20,6 +21,8 @@ extern volatile uint8_t step_head, step_on;
         __asm__ volatile("" ::: "memory");                                                                             \
         (line)->head = step_head = (uint8_t)(i);                                                                       \
     } while (0)
+#define TROCHIA_LIGHT(line, at, to) beam_light(at, to)
+uint8_t beam_light(uint16_t at, uint8_t power);
 /* grid.S, rows.S */
 #define TROCHIA_BEND(run) run_bend(run)
 #define TROCHIA_PLACE(line, row, most) row_place(row, most)
@@ -32,6 +35,8 @@ uint8_t row_full(struct trochia_motor *motor, struct trochia_row *row);
 uint8_t row_brisk(struct trochia_motor *motor, struct trochia_row *row);
 uint8_t row_place(struct trochia_row *row, uint8_t most);
 #define TROCHIA_PACK(line, to, from, slots) slots_pack(to, from, slots)
+#define TROCHIA_STEPS(line, limit) steps_made(limit)
+uint8_t steps_made(uint16_t limit);
 uint8_t slots_pack(uint8_t to, uint8_t from, uint8_t slots);
 void run_bend(void *run);
 void row_clear(uint8_t from, uint8_t slots);
@@ -55,7 +60,7 @@ extern volatile uint16_t slice_since; /* when the last of them did [timer 1] */
 extern volatile uint8_t directions;   /* motors that go backwards */
 extern volatile uint8_t span_power, span_lit, outputs, silence_over;
 extern volatile uint8_t caught, caught_slice, caught_new, estop_seen;
-extern volatile uint16_t caught_after, silent_slices;
+extern volatile uint16_t caught_after;
 extern volatile uint8_t ended; /* END has been reached */
 
 /* When the last frame ended: that is the instant a status speaks of, however long it takes to make one. */
@@ -84,11 +89,18 @@ void watch_look(void);
 /* Lights the beam if it may be lit now; with interrupts off. */
 void beam_put(void);
 
+/* Changes of the beam's power to come (act.c): none; and from a tick on, at which the first slice begins. */
+void beam_begin(void);
+void beam_kick(uint16_t tick);
+extern uint16_t beam_since; /* when the slice that is being made begins [timer 1] */
+
 /* The queue, bytes of spans (queue.c). */
 void queue_clear(void);
 uint16_t queue_free(void);
 uint8_t queue_put(const uint8_t *payload, uint8_t size);
-uint8_t queue_get(uint8_t *bytes, uint8_t size); /* returns 0 where it is empty */
+uint16_t queue_size(const trochia_span *span);
+uint8_t queue_next(uint8_t *bytes, uint8_t size); /* the beginning of the next span; returns 0 where there is none */
+void queue_get(uint8_t *bytes, uint8_t size);     /* more of it */
 void queue_cut(uint16_t number, uint32_t duration, uint8_t *found);
 uint32_t queue_hand(void);
 

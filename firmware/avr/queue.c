@@ -5,9 +5,10 @@
 
 static uint8_t bytes[BOARD_QUEUE];
 static uint16_t head, used;
+static uint16_t ahead; /* bytes of the span under way: those of its pixels that are still to come */
 
 void queue_clear(void) {
-    head = used = 0;
+    head = used = ahead = 0;
 }
 
 uint16_t queue_free(void) {
@@ -45,27 +46,40 @@ static void read(uint16_t offset, uint8_t *to, uint8_t size) {
     memcpy(to + first, bytes, (uint8_t)(size - first));
 }
 
-uint8_t queue_get(uint8_t *to, uint8_t size) {
-    if (used < size)
-        return 0;
-    read(0, to, size);
+static void drop(uint16_t size) {
     head = place(size);
     used = (uint16_t)(used - size);
-    return 1;
 }
 
-static uint8_t size_of(const trochia_span *span) {
-    uint8_t size = sizeof *span;
+void queue_get(uint8_t *to, uint8_t size) {
+    read(0, to, size);
+    drop(size);
+    ahead = (uint16_t)(ahead - size);
+}
+
+uint16_t queue_size(const trochia_span *span) {
+    uint16_t size = (uint16_t)(sizeof *span + span->flags / TROCHIA_PIXEL * sizeof(trochia_pixel));
     for (uint8_t motors = span->motors; motors; motors &= (uint8_t)(motors - 1))
-        size = (uint8_t)(size + sizeof(trochia_part));
+        size = (uint16_t)(size + sizeof(trochia_part));
     return size;
 }
 
-/* Ends a span earlier, and drops those after it. */
+uint8_t queue_next(uint8_t *to, uint8_t size) {
+    drop(ahead);
+    ahead = 0;
+    if (!used)
+        return 0;
+    read(0, to, size);
+    drop(size);
+    ahead = (uint16_t)(queue_size((const trochia_span *)to) - size);
+    return 1;
+}
+
+/* Ends a span earlier, and drops those after it; all of them, where it is none of them. */
 void queue_cut(uint16_t number, uint32_t duration, uint8_t *found) {
     trochia_span span;
     *found = 0;
-    for (uint16_t offset = 0; offset < used; offset = (uint16_t)(offset + size_of(&span))) {
+    for (uint16_t offset = ahead; offset < used; offset = (uint16_t)(offset + queue_size(&span))) {
         read(offset, (uint8_t *)&span, sizeof span);
         if (span.number != number)
             continue;
@@ -76,15 +90,16 @@ void queue_cut(uint16_t number, uint32_t duration, uint8_t *found) {
         }
         for (uint8_t i = 0; i < 4; i++)
             bytes[place((uint16_t)(offset + i))] = (uint8_t)(duration >> 8 * i);
-        used = (uint16_t)(offset + size_of(&span));
+        used = (uint16_t)(offset + queue_size(&span));
         return;
     }
+    used = ahead;
 }
 
 uint32_t queue_hand(void) {
     trochia_span span;
     uint32_t hand = 0;
-    for (uint16_t offset = 0; offset < used; offset = (uint16_t)(offset + size_of(&span))) {
+    for (uint16_t offset = ahead; offset < used; offset = (uint16_t)(offset + queue_size(&span))) {
         read(offset, (uint8_t *)&span, sizeof span);
         hand += trochia_hand(span.slew, span.duration);
     }

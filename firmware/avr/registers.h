@@ -1,6 +1,7 @@
 /* Registers that belong to the step interrupt (line_isr.S); all C is compiled so that it leaves them alone.  GPIOR0's
  * bit 0 says that an entry which is no pulse is due next, bit 1 that a slot of the grid is, bit 2 that the beam may
- * shine; GPIOR1 is the pulses' width beyond the least, in three cycles, and one. */
+ * shine; GPIOR1 is the pulses' width beyond the least, in three cycles, and one; GPIOR2 is the tail of the beam's
+ * ring. */
 #ifndef TROCHIA_REGISTERS_H
 #define TROCHIA_REGISTERS_H
 

@@ -8,12 +8,12 @@
 #include "motion_parts.h"
 
 enum { TURN = 400, WIDTH = 24, SEND = 64, RECEIVE = 128, BITS = 10, DIVIDER = 8, PULLED_UP_B = 6, PULLED_UP_C = 0x27 };
-enum { ACTS = 1, GRID = 2, ONLY_BEAM = 128, BEAM_MODE_ADDRESS = 0xb0 };
+enum { ACTS = 1, GRID = 2, BEAM_MODE_ADDRESS = 0xb0 };
 
 volatile uint8_t PINB, PINC, PIND, PORTB, PORTC, PORTD, DDRB, DDRC, DDRD;
 volatile uint8_t PCMSK0, PCMSK1, PCICR, TCCR1B, TCCR2A, TCCR2B, OCR2A, TIMSK1, TIFR1;
-volatile uint8_t UCSR0A, UCSR0B, UDR0, GPIOR0, GPIOR1;
-volatile uint16_t TCNT1, OCR1A, UBRR0;
+volatile uint8_t UCSR0A, UCSR0B, UDR0, GPIOR0, GPIOR1, GPIOR2, TCNT2;
+volatile uint16_t TCNT1, OCR1A, OCR1B, UBRR0;
 uint8_t isr_pins __asm__("r2"), isr_fraction __asm__("r3"), isr_add __asm__("r4"), isr_low __asm__("r5");
 uint8_t isr_high __asm__("r6"), isr_count __asm__("r7"), isr_at_low __asm__("r8"), isr_at_high __asm__("r9");
 uint8_t isr_tail __asm__("r11");
@@ -21,6 +21,7 @@ uint8_t isr_tail __asm__("r11");
 extern volatile uint8_t received[RECEIVE], received_head, send_next, send_end;
 extern uint8_t sending[SEND];
 extern volatile uint16_t overflows;
+extern volatile uint8_t beam_head;
 void line_act(void);
 void PCINT0_vect(void);
 void slots_count(uint8_t place, uint8_t slots, uint8_t *counts);
@@ -109,7 +110,7 @@ static void go_to(uint32_t ticks) {
 static void load(void) {
     uint8_t entry[8];
     if (step_head == isr_tail) {
-        TIMSK1 &= (uint8_t)~(1 << OCIE1A);
+        TIMSK1 &= (uint8_t)~(1 << OCIE1A | 1 << OCIE1B);
         step_on = 0;
         return;
     }
@@ -151,16 +152,15 @@ static void grid(void) {
 }
 
 static void act(void) {
-    uint8_t kind = step_ring[(uint8_t)(isr_tail + 2)], flags = step_ring[(uint8_t)(isr_tail + 6)];
+    uint8_t kind = step_ring[(uint8_t)(isr_tail + 2)], full = step_ring[(uint8_t)(isr_tail + 4)];
     GPIOR0 &= (uint8_t)~ACTS;
     if (kind == TROCHIA_MARK) {
         slice_since = (uint16_t)(isr_at_low | isr_at_high << 8);
         slice_done++;
-        silent_slices++;
         isr_tail = (uint8_t)(isr_tail + 8);
-    } else if (kind == TROCHIA_ACT && flags & ONLY_BEAM) {
-        span_power = step_ring[(uint8_t)(isr_tail + 5)];
-        board_beam(GPIOR0 >> MAY_SHINE & 1 ? span_power : 0);
+    } else if (kind == TROCHIA_FULLY && !full) {
+        GPIOR0 &= (uint8_t)~(1 << MAY_SHINE);
+        board_beam(0);
         isr_tail = (uint8_t)(isr_tail + 8);
     } else {
         PINB = 0; /* what is written to it toggles outputs; nobody reads inputs here */
@@ -184,6 +184,20 @@ static void match(void) {
         act();
     } else {
         load();
+    }
+}
+
+/* Changes of the beam's power that are due. */
+static void shine(void) {
+    while (TIMSK1 >> OCIE1B & 1 && (uint16_t)(TCNT1 - OCR1B) < TROCHIA_SLICE / 2) {
+        const uint8_t *entry = step_ring + 256 + GPIOR2;
+        span_power = entry[2 * BEAMS];
+        board_beam(GPIOR0 >> MAY_SHINE & 1 ? span_power : 0);
+        GPIOR2 = (GPIOR2 + 1) & (BEAMS - 1);
+        entry = step_ring + 256 + GPIOR2;
+        OCR1B = (uint16_t)(entry[0] | entry[BEAMS] << 8);
+        if (GPIOR2 == beam_head)
+            TIMSK1 &= (uint8_t)~(1 << OCIE1B);
     }
 }
 
@@ -248,6 +262,7 @@ void chip_run(uint64_t until) {
         overflows = (uint16_t)(cycle >> 16);
         if (armed && cycle == due)
             match();
+        shine();
         if (head != tail && cycle >= arrives)
             arrive();
         if (sends && cycle == leaves)

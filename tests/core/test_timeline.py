@@ -167,7 +167,55 @@ def test_pulses_of_different_slots_keep_apart_also_while_braking():
     assert min(after - before for before, after in pairwise(ticks.tolist())) >= 64
 
 
-@pytest.mark.parametrize("cut", [1, 11, 13, 31])
+def lights(done: Executed) -> list[tuple[int, int]]:
+    return list(zip(done.lights["tick"].tolist(), done.lights["power"].tolist(), strict=True))
+
+
+pixels = st.lists(st.tuples(st.integers(0, 255), st.integers(0, 255)), max_size=40)
+
+
+@given(st.lists(st.tuples(st.integers(1, 60_000), st.integers(0, 255), pixels), min_size=1, max_size=5),
+       st.lists(st.integers(100, 900), min_size=2, max_size=2))  # fmt: skip
+def test_powers_change_at_their_ticks_whatever_the_motors_do(spans: list[tuple[int, int, Any]], rates: list[int]):
+    """Pixels beyond a span's end are none; a power that was is no change."""
+    whole, wanted, start, now = b"", [], 0, 0
+    for number, (ticks, first, light) in enumerate(spans):
+        parts = {motor: part(rate, 50 * rate, 1 + ticks // (60 * rate)) for motor, rate in enumerate(rates)}
+        whole += span(parts, ticks=ticks, number=number, power=first, pixels=tuple(light))
+        at = 0
+        for after, power in [(0, first), *light]:
+            at += after * SLOT
+            if at >= ticks:
+                break
+            if power != now:
+                wanted.append((start + at, power))
+            now = power
+        start += ticks
+    assert lights(executed(whole)) == wanted
+
+
+def test_powers_keep_to_the_stream_while_it_is_braked():
+    """In a slice of rate r a tick of the stream lasts 1 / r of the chip's."""
+    step, slew = 80, 2_000
+    whole = b"".join(
+        span({}, number=i, slew=slew, rest=i == 23, power=i % 2, pixels=tuple((step, i + k & 1) for k in range(1, 12)))
+        for i in range(24)
+    )
+    done, stream, starts = executed(whole, brake=2), 2 * SLICE, [(0, 0, FULL_RATE)]
+    for k in range(1, FULL_RATE // slew + 2):
+        rate = max(FULL_RATE - slew * k, 0)
+        starts.append(((k + 1) * SLICE, stream, rate))
+        stream += rate // 2
+    at = np.array([i * SPAN_TICKS + k * step * SLOT for i in range(24) for k in range(1, 12)])
+    at = at[(at < done.stream)]
+    due = [begin + (tick - since) * FULL_RATE / rate for tick in at.tolist()
+           for begin, since, rate in [max(s for s in starts if s[1] <= tick and s[2])]]  # fmt: skip
+    seen = done.lights["tick"]
+    assert len(seen) == len(due)  # the power that was at each span's beginning is none
+    assert np.abs(seen - np.array(due)).max() <= SLICE >> 6
+
+
+@pytest.mark.parametrize("cut", [1, 11, 13, 31, 33])
 def test_bytes_that_are_no_spans_are_refused(cut: int):
     with pytest.raises(ValueError, match="no spans"):
-        executed(steady([1_000], 1)[:cut])
+        executed(span({0: part(5_000, 4_000, 20)}, pixels=((5, 6),))[:cut])

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
-from trochia.backends.simulated_chip import LOST, PIN
+from trochia.backends.simulated_chip import LOST
 from trochia.kernels.link import CAUSES, LOOSE, STATES, TYPES, executed
 
 if TYPE_CHECKING:
@@ -16,40 +16,16 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+_chip = sys.modules["chip_motion"]
+edges, stream = _chip.edges, _chip.stream
 CLOCK = 16e6
 US = 16  # cycles
 STEPS = ("D2", "D3", "D4")
 MODE = 0xB0  # TCCR2A: 0 where the beam's pin is low
 
 
-def edges(events: NDArray[np.void], pin: str, level: int) -> NDArray[np.int64]:
-    mine = (events["kind"] == PIN) & (events["unit"] == pin[0].encode()) & (events["line"] == int(pin[1:]))
-    return events["cycle"][mine & (events["value"] == level)].astype(np.int64)
-
-
 def steady(*arguments: Any, **named: Any) -> list[bytes]:
     return sys.modules["steady_spans"].steady(*arguments, **named)
-
-
-def stream(told: Any, spans: list[bytes], *, status: float = 0.01) -> Any:
-    """Send spans as there is room, a status asked for every so often, until all is done."""
-    told.switch(enable=1)
-    told.begin()
-    sent, started, asked = 0, False, told.now
-    while True:
-        while sent < len(spans) and told.session.room >= len(spans[sent]) and told.session.waiting < 3:
-            told.session.order("span", spans[sent])
-            sent += 1
-        full = sent == len(spans) or told.session.room < len(spans[0])
-        if not started and full and not told.session.waiting:
-            told.session.order("go")
-            started, told.status = True, None
-        if told.now - asked >= status:
-            told.session.ask()
-            asked = told.now
-        told.pass_on(0.0005)
-        if started and told.status is not None and STATES[int(told.status["state"])] in {"idle", "stopped"}:
-            return told.ask()
 
 
 @pytest.mark.parametrize(

@@ -22,7 +22,8 @@ PUT, LOOK, HELLO = dtype_of("trochia_put"), dtype_of("trochia_look"), dtype_of("
 ANSWER, ACK = dtype_of("trochia_answer"), dtype_of("trochia_ack")
 #: ``first`` beside the fields of a tick segment
 PART = np.dtype([("first", "<u4"), *((name, SEGMENT[name]) for name in SEGMENT.names or ())])
-PULSE = dtype_of("trochia_pulse_at")
+PULSE, LIGHT = dtype_of("trochia_pulse_at"), dtype_of("trochia_light_at")
+PIXEL = dtype_of("trochia_pixel")
 STATUS = dtype_of("trochia_status")
 SCHEMA: int = lib.trochia_schema()
 SCHEMA_BYTES = 4  #: of an answer, at its beginning in every version
@@ -30,6 +31,8 @@ MOTORS, SLICE, FULL_RATE = lib.TROCHIA_MOTORS, lib.TROCHIA_SLICE, lib.TROCHIA_FU
 PAYLOAD = lib.TROCHIA_PAYLOAD  #: greatest payload of a frame [bytes]
 LOOSE = lib.TROCHIA_LOOSE  #: types from here on are not numbered
 AT_REST, SET_OUTPUTS = lib.TROCHIA_AT_REST, lib.TROCHIA_SET_OUTPUTS
+PIXELS = lib.TROCHIA_PIXEL  #: in a span's flags: times how many pixels there are
+SLOT = lib.TROCHIA_SLOT  #: ticks: unit of a pixel's time
 _LINE = lib.TROCHIA_FRAMED
 _CHUNK = 4096  # steps a call
 
@@ -155,6 +158,8 @@ class Executed(NamedTuple):
     ----------
     pulses
         In order (pulses,), of dtype ``PULSE``.
+    lights
+        Changes of the beam's power (lights,), of dtype ``LIGHT``.
     stream
         Stream time run through [ticks].
     rate
@@ -166,6 +171,7 @@ class Executed(NamedTuple):
     """
 
     pulses: NDArray[np.void]
+    lights: NDArray[np.void]
     stream: int
     rate: int
     position: NDArray[np.int64]
@@ -185,15 +191,17 @@ def executed(spans: bytes, *, brake: int = -1) -> Executed:
     ValueError
         For bytes that are no spans.
     """
-    line = ffi.new("trochia_timeline *")
-    count = lib.trochia_timeline_pulses(line, spans, len(spans), brake, 0, ffi.NULL)
-    if count < 0:
-        raise ValueError("these bytes are no spans")
-    made = np.empty(count, PULSE)
-    line = ffi.new("trochia_timeline *")
-    lib.trochia_timeline_pulses(line, spans, len(spans), brake, count, pointer(made, "trochia_pulse_at *"))
+    done, line = ffi.new("trochia_executed *"), ffi.new("trochia_timeline *")
+    made, lights = np.empty(0, PULSE), np.empty(0, LIGHT)
+    for _ in range(2):  # the first time it is only counted
+        line, made, lights = ffi.new("trochia_timeline *"), np.empty(done.made, PULSE), np.empty(done.lit, LIGHT)
+        done.pulses, done.lights = pointer(made, "trochia_pulse_at *"), pointer(lights, "trochia_light_at *")
+        done.pulse_room, done.light_room = done.made, done.lit
+        done.made = done.lit = 0
+        if lib.trochia_timeline_run(line, spans, len(spans), brake, done) < 0:
+            raise ValueError("these bytes are no spans")
     position = np.array([motor.position for motor in line.motors], np.int64)
-    return Executed(made, int(line.stream), int(line.rate), position, bool(line.crowded))
+    return Executed(made, lights, int(line.stream), int(line.rate), position, bool(line.crowded))
 
 
 def pulses(spans: bytes) -> NDArray[np.void]:

@@ -23,7 +23,7 @@ from trochia.backends.avr.wiring import BOARDS, steps_per_unit, wire
 from trochia.backends.live import BUILT_IN, Orders, Report, Trouble
 from trochia.backends.queue import Queue
 from trochia.errors import LimitError, LinkError, LinkTimeout, LocalProtocolError, RemoteProtocolError
-from trochia.kernels.link import BEGIN, CAUSES, CUT, FULL_RATE, PART, SPAN, STATES  # fmt: skip
+from trochia.kernels.link import BEGIN, CAUSES, CUT, FULL_RATE, STATES
 from trochia.messages import Cause
 
 if TYPE_CHECKING:
@@ -237,7 +237,7 @@ class LiveAvr:
             if not self._moving:
                 return
             self._begin()
-        largest = SPAN.itemsize + PART.itemsize * len(self._names)
+        largest = self._maker.payload
         while self.session.room >= largest and self.session.waiting < 3:
             boundaries = [self._maker.tick(at) for at, _, _ in self._timed]
             if not self._worth():
@@ -300,7 +300,7 @@ class LiveAvr:
         name = bytes(answer["board"]).rstrip(b"\0").decode("ascii", "replace")
         if name != self.board.name:
             raise RemoteProtocolError(f"the board is {name}, not {self.board.name}", hint=f"Say --board {name}.")
-        self.answer = answer
+        self.answer, self._maker.payload = answer, int(answer["payload"])
 
     def _told(self, told: Told) -> None:
         status = told.status

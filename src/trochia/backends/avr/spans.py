@@ -11,8 +11,22 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from trochia.backends.avr.powers import Powers
 from trochia.errors import LimitError
-from trochia.kernels.link import AT_REST, FULL_RATE, PART, SET_OUTPUTS, SLICE, SPAN, cubic_steps, fit_one, pulses
+from trochia.kernels.link import (
+    AT_REST,
+    FULL_RATE,
+    PART,
+    PAYLOAD,
+    PIXEL,
+    PIXELS,
+    SET_OUTPUTS,
+    SLICE,
+    SPAN,
+    cubic_steps,
+    fit_one,
+    pulses,
+)  # fmt: skip
 from trochia.kernels.ticks import BACKWARDS
 
 if TYPE_CHECKING:
@@ -56,12 +70,15 @@ class SpanMaker:
         Beam's level, 0 … 255, of a row's power.
     closest
         Two steps of a motor may be [ticks].
+    payload
+        Of a span, at most [bytes].
     """
 
     def __init__(
-        self, steps_per_unit: NDArray[np.float64], clock: int, power: Callable[[float], int], closest: int = CLOSEST
-    ) -> None:
-        self.clock = clock
+        self, steps_per_unit: NDArray[np.float64], clock: int, power: Callable[[float], int], closest: int = CLOSEST,
+        *, payload: int = PAYLOAD,
+    ) -> None:  # fmt: skip
+        self.clock, self.payload = clock, payload
         self._closest = closest
         self._scale = steps_per_unit
         self._power = power
@@ -136,34 +153,37 @@ class SpanMaker:
         end = min([last, self.at + LONGEST, *(b for b in boundaries if b > self.at)])
         if self._looked < end:
             self._look(queue, min(last, max(end, self._looked + LOOKED)))
-        end, slew, power = self._uniform(queue, end)
+        end, slew, powers = self._uniform(queue, end)
         fitted = [self._fitted(j, end) for j in range(len(self._scale))]
         end = min([end, *(reach for _, _, reach in fitted)])
         head = np.zeros((), SPAN)
-        head["number"], head["power"], head["outputs"] = self.number & 0xFFFF, power, outputs(self.at)
+        head["number"], head["power"], head["outputs"] = self.number & 0xFFFF, powers.first, outputs(self.at)
         head["slew"] = min(int(KEPT * slew * SLICE / self.clock * FULL_RATE), 0xFFFF)
         head["flags"] = SET_OUTPUTS | (AT_REST if end >= last and queue.ends_at_rest else 0)
-        return self._made(head, end, fitted)
+        return self._made(head, end, fitted, powers)
 
-    def _uniform(self, queue: Queue, end: int) -> tuple[int, float, int]:
-        """Return where the beam's power changes or the slew too much, the slew, and the level."""
+    def _uniform(self, queue: Queue, end: int) -> tuple[int, float, Powers]:
+        """Return where the slew changes too much or the powers no longer fit in, the slew, and the powers."""
         now = self.time(self.at) + 0.5 / self.clock + 1e-9  # a row begins within half a tick of its tick
         row = max(int(queue.starts.searchsorted(now, side="right")) - 1, 0)
-        slew, power = float(queue.held.slew[row]), self._power(float(queue.held.power[row]))
-        mean = done = 0.0
-        for i in range(row, len(queue.held)):
-            start = self.tick(queue.starts[i])
-            if start >= end:
+        last = max(int(queue.starts.searchsorted(self.time(end), side="left")), row + 1)
+        starts = np.rint((queue.starts[row:last] - self.origin) * self.clock).astype(np.int64)
+        slews, lengths = queue.held.slew[row:last], queue.held.duration[row:last]
+        least = np.minimum.accumulate(slews)
+        steep = np.flatnonzero(least * np.cumsum(lengths) < SHARE * np.cumsum(lengths * slews))
+        rows = int(steep[0]) if steep.size else len(starts)
+        end = min(end, int(starts[rows])) if rows < len(starts) else end
+        levels = [self._power(power) for power in queue.held.power[row : row + rows].tolist()]
+        moving = sum(1 for ticks in self._ticks if ticks.size and ticks[0] < end)
+        room = self.payload - SPAN.itemsize - PART.itemsize * moving
+        powers = Powers(self.at, levels[0], room // PIXEL.itemsize)
+        for at, level in zip(starts[1:rows].tolist(), levels[1:], strict=True):
+            if at >= end:
                 break
-            least = min(slew, float(queue.held.slew[i]))
-            length = float(queue.held.duration[i])
-            if self._power(float(queue.held.power[i])) != power:
-                return start, slew, power
-            mean, done = mean + length * float(queue.held.slew[i]), done + length
-            if i > row and least * done < SHARE * mean:
-                return start, slew, power
-            slew = least
-        return end, slew, power
+            if not powers.add(at, level):
+                end = at
+                break
+        return end, float(least[rows - 1]), powers
 
     def _fitted(self, joint: int, end: int) -> tuple[Any, NDArray[np.int64], int]:
         """Return a joint's part, the ticks it makes its steps at, and up to which tick it follows the joint."""
@@ -184,7 +204,7 @@ class SpanMaker:
         part["flags"] |= BACKWARDS if ways[0] < 0 else 0
         return part, at, end if len(at) >= count else int(ticks[len(at)])
 
-    def _made(self, head: Any, end: int, fitted: list[tuple[Any, NDArray[np.int64], int]]) -> Span:  # noqa: ANN401 - a numpy record has no type of its own
+    def _made(self, head: Any, end: int, fitted: list[tuple[Any, NDArray[np.int64], int]], powers: Powers) -> Span:  # noqa: ANN401 - a numpy record has no type of its own
         """Return the span up to ``end``, and stand there; parts that would go further are cut."""
         before, parts, latest = self.count.copy(), b"", end
         for j, (part, at, _) in enumerate(fitted):
@@ -201,6 +221,9 @@ class SpanMaker:
             self._ticks[j], self._ways[j] = self._ticks[j][count:], self._ways[j][count:]
         self._ticks = [_spaced(ticks, latest, self._closest) for ticks in self._ticks]
         head["duration"] = latest - self.at
+        pixels = powers.until(latest)
+        head["flags"] |= PIXELS * len(pixels)
+        parts += pixels.tobytes()
         made = Span(number=self.number, start=self.at, end=latest, before=before, payload=head.tobytes() + parts)
         self.at, self.number = latest, self.number + 1
         return made
