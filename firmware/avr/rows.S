@@ -65,6 +65,35 @@
     std Y + M_POSITION + 3, r0
     .endm
 
+    /* Steps from r20:r19:r18 on [2^-8 ticks], r0 of them, r23:r22:r21 apart, each into its slot or the next that is free,
+     * up to r25:r24 [ticks]; to \stops where no slot is left, to \ends where all are made.  r16 base, r17 free, r30 stop,
+     * r31 pin, r27 the ring's page. */
+    .macro steps stops, ends
+1:  mov r26, r19
+    lsl r26
+    mov r26, r20
+    rol r26
+    cp r26, r17
+    brsh 2f
+    mov r26, r17
+2:  cp r26, r30
+    brsh \stops
+    mov r17, r26
+    inc r17
+    add r26, r16
+    ld r1, X
+    or r1, r31
+    st X, r1
+    add r18, r21
+    adc r19, r22
+    adc r20, r23
+    dec r0
+    breq \ends
+    cp r19, r24
+    cpc r20, r25
+    brlo 1b
+    .endm
+
 full_ends:
     clz
 full_leaves: /* with Z for all */
@@ -125,29 +154,7 @@ stride:
     cpi r23, 0x40
     brsh full_ends
     ldi r27, hi8(step_ring)
-1:  mov r26, r19
-    lsl r26
-    mov r26, r20
-    rol r26
-    cp r26, r17
-    brsh 2f
-    mov r26, r17
-2:  cp r26, r30
-    brsh full_stops
-    mov r17, r26
-    inc r17
-    add r26, r16
-    ld r1, X
-    or r1, r31
-    st X, r1
-    add r18, r21
-    adc r19, r22
-    adc r20, r23
-    dec r0
-    breq bend
-    cp r19, r24
-    cpc r20, r25
-    brlo 1b
+    steps full_stops, bend
     note_phase
 full_done:
     sez
@@ -289,29 +296,7 @@ brisk:
     movw r30, r26
     ldd r0, Y + M_PHASE
     ldi r27, hi8(step_ring)
-1:  mov r26, r19
-    lsl r26
-    mov r26, r20
-    rol r26
-    cp r26, r17
-    brsh 2f
-    mov r26, r17
-2:  cp r26, r30
-    brsh 8f
-    mov r17, r26
-    inc r17
-    add r26, r16
-    ld r1, X
-    or r1, r31
-    st X, r1
-    add r18, r21
-    adc r19, r22
-    adc r20, r23
-    dec r0
-    breq 3f
-    cp r19, r24
-    cpc r20, r25
-    brlo 1b
+    steps 8f, 3f
     rjmp 3f
 8:  set /* no slot is left */
 3:  ldd r26, Y + M_PHASE
