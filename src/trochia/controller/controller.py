@@ -382,9 +382,9 @@ class Controller:
             return ProgramStatus(name=self.running.name, lines=self.running.plan.program.lines, line=line,
                                  distance=self.activity.point(self.report)["distance"],
                                  time_s=whole, done_s=max(done, 0.0), remaining_s=max(whole - done, 0.0))  # fmt: skip
-        if self.loaded is None:
+        if self.loaded is None or self.preview is None:
             return None
-        return ProgramStatus(name=self.loaded[0], lines=self.loaded[1].count("\n") + 1)
+        return ProgramStatus(name=self.loaded[0], lines=self.preview.plan.program.lines)
 
     def _point(self, now: float) -> None:
         """Note where the machine is, while it moves and once when it has come to rest."""

@@ -31,6 +31,8 @@ CHUNK = 0.05  #: motion sent at a time [s]
 SOON = 0.2  #: motion that is sent at once, where the backend wants as much [s]
 SPARE = 2  #: chunks beyond that in one call
 STOP = 0.6  #: ∫ s du that is kept ahead; a half stops from rate 1
+KEPT = 60.0  #: motion behind that stays in hand, for run-ups [s]
+FORGET = 10.0  #: between looks at what may go [s]
 STEEPEST = 1000.0  #: greatest slew [1/s]: at rest any would do
 _INSIDE = np.array([0.02, 0.5, 0.98])  #: where in a row its slew is looked at
 
@@ -67,6 +69,7 @@ class Feeder:
         self._limits = live.rules.limits
         self._ahead = ahead
         self._power = power
+        self._forgotten = 0.0  # plan time before which motion is not in hand any more
         self._stale = False  # whether the backend holds motion that is planned no more
         self._stops: list[tuple[float, float]] = []  # (plan time at a row's end, its ∫ s du)
 
@@ -93,6 +96,9 @@ class Feeder:
         """
         now = self.plan_time(executed)
         self._stops = [stop for stop in self._stops if stop[0] > now]
+        if now - KEPT > self._forgotten + FORGET:
+            self._forgotten = now - KEPT
+            self.live.forget(self._forgotten)
         spare = SPARE
         while self.sent < self.end - 1e-12 and not self._enough(now):
             if self.sent - now >= SOON and self._can_stop:

@@ -19,7 +19,7 @@ from trochia.controller.homing import squared
 from trochia.controller.job import Job
 from trochia.controller.jog import Jog
 from trochia.controller.readying import MDI
-from trochia.controller.starting import LEAST, begin, check_overrides, known, run_from, start
+from trochia.controller.starting import LEAST, begin, check_overrides, plan_here, run_from, start
 from trochia.controller.states import State
 from trochia.errors import LimitError, LocalProtocolError, OutOfTravelError
 from trochia.messages import command as c
@@ -71,8 +71,7 @@ def acknowledge(it: Controller, _command: c.Acknowledge, _now: float) -> str:
 
 def load(it: Controller, command: c.Load, _now: float) -> str:
     """Make a program the one to run, once it has been read and planned from here."""
-    made = it.readier.ready(command.text, command.name, work=it.work, at=it.position(),
-                            block_delete=it.switches.block_delete, bounded=known(it))  # fmt: skip
+    made = plan_here(it, command.text, command.name)
     it.loaded, it.preview = (command.name, command.text), made
     return f"{made.plan.program.lines} lines, {made.plan.time_s:.1f} s"
 

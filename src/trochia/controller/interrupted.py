@@ -87,8 +87,8 @@ def work_entry(work: WorkState) -> dict[str, Any]:
     return kept | {"variables": {str(number): value for number, value in work.variables.items()}}
 
 
-def keep(folder: Path, text: str) -> str:
-    """Keep a program's text on the disk, and return its check sum; the oldest beyond :data:`KEPT` are dropped.
+def draft(folder: Path, text: str) -> str:
+    """Write a program's text to the disk for :func:`keep` to take, and return its check sum; there is one draft.
 
     Raises
     ------
@@ -100,12 +100,34 @@ def keep(folder: Path, text: str) -> str:
     path = folder / PROGRAMS / f"{digest}.ngc"
     if not path.exists():
         path.parent.mkdir(parents=True, exist_ok=True)
-        draft = path.with_suffix(".part")
-        with draft.open("wb") as file:
+        for other in path.parent.glob("*.part"):
+            other.unlink(missing_ok=True)
+        with path.with_suffix(".part").open("wb") as file:
             file.write(data)
             file.flush()
             os.fsync(file.fileno())
-        draft.replace(path)
+    return digest
+
+
+def keep(folder: Path, text: str, digest: str = "") -> str:
+    """Keep a program's text on the disk, and return its check sum; the oldest beyond :data:`KEPT` are dropped.
+
+    Parameters
+    ----------
+    digest
+        What :func:`draft` returned for that text; empty: there is no draft of it.
+
+    Raises
+    ------
+    OSError
+        When it cannot be written.
+    """
+    digest = digest or draft(folder, text)
+    path = folder / PROGRAMS / f"{digest}.ngc"
+    if not path.exists():
+        if not path.with_suffix(".part").exists():
+            draft(folder, text)
+        path.with_suffix(".part").replace(path)
         old = sorted(path.parent.glob("*.ngc"), key=lambda kept: kept.stat().st_mtime)
         for spare in old[:-KEPT]:
             spare.unlink()

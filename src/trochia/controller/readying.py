@@ -13,6 +13,7 @@ import numpy as np
 
 from trochia.analysis.plan import Plan, make
 from trochia.analysis.travel import travel_error
+from trochia.errors import TrochiaError
 from trochia.languages import gcode
 from trochia.languages.gcode.answers import KEPT, Answer, Answers
 from trochia.program import AXES, Action, PathMode, Probe, Program, WaitInput, WorkState
@@ -76,6 +77,27 @@ class Readier:
         self._machine = machine
         self._reading = replace(reading, dialect=reading.dialect or gcode.DIALECTS[machine.dialect])
         self._last: Ready | None = None
+        self._failed: tuple[tuple[object, ...], TrochiaError] | None = None  # what was found wrong beside the turns
+
+    def knows(
+        self, text: str, name: str, *, work: WorkState, at: dict[str, float], block_delete: bool, exact: bool
+    ) -> bool:
+        """Whether the plan of a text is there."""
+        key = _key(text, name, work, _start(at), block_delete=block_delete, exact=exact, answers=None)
+        return self._last is not None and self._last.key == key
+
+    def prepare(
+        self, text: str, name: str, *, work: WorkState, at: dict[str, float], block_delete: bool, exact: bool,
+        bounded: bool,
+    ) -> bool:  # fmt: skip
+        """Have the plan of a text, or what is wrong with it, ready for the next call of :meth:`ready`; True: a plan."""
+        try:
+            self.ready(text, name, work=work, at=at, block_delete=block_delete, exact=exact, bounded=bounded)
+        except TrochiaError as error:
+            key = _key(text, name, work, _start(at), block_delete=block_delete, exact=exact, answers=None)
+            self._failed = (key, error)
+            return False
+        return True
 
     def ready(
         self, text: str, name: str, *, work: WorkState, at: dict[str, float], block_delete: bool = False,
@@ -99,10 +121,13 @@ class Readier:
         ProgramError, PlanningError
             At the first thing that is wrong.
         """
-        start = tuple(at.get(letter, 0.0) for letter in AXES)
-        key = (text, name, id(work), tuple(round(value, 6) for value in start), block_delete, exact, answers)
-        if self._last is not None and self._last.key == key:
-            return self._last
+        start = _start(at)
+        key = _key(text, name, work, start, block_delete=block_delete, exact=exact, answers=answers)
+        last, (failed, self._failed) = self._last, (self._failed, None)
+        if last is not None and last.key == key:
+            return last
+        if failed is not None and failed[0] == key:
+            raise failed[1]
         program, left, asks = self._read(text, name, work, start, block_delete=block_delete, answers=answers,
                                          ours=ours)  # fmt: skip
         plan = make(_stopping(program) if exact else program, self._machine)
@@ -112,7 +137,8 @@ class Readier:
         error = travel_error(plan) if bounded and not made.asking else None
         if error is not None:
             raise error
-        self._last = made
+        if not name.startswith("<"):  # a jog, or a line of the operator's, does not take the program's place
+            self._last = made
         return made
 
     def onward(self, made: Ready, answer: Answer, *, at: dict[str, float], exact: bool) -> Ready:
@@ -161,6 +187,18 @@ class Readier:
         if error is not None:
             raise error
         return replace(made, plan=plan)
+
+
+def _start(at: dict[str, float]) -> tuple[float, ...]:
+    return tuple(at.get(letter, 0.0) for letter in AXES)
+
+
+def _key(
+    text: str, name: str, work: WorkState, start: tuple[float, ...], *, block_delete: bool, exact: bool,
+    answers: tuple[Answer, ...] | None,
+) -> tuple[object, ...]:  # fmt: skip
+    """Return what a plan depends on."""
+    return (text, name, id(work), tuple(round(value, 6) for value in start), block_delete, exact, answers)
 
 
 def rest_of(program: Program, moves: int, actions: int, start: NDArray[np.float64]) -> Program:

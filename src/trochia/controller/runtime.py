@@ -18,12 +18,15 @@ from dataclasses import dataclass
 from queue import Empty, SimpleQueue
 from typing import TYPE_CHECKING
 
+import msgspec
+
 from trochia.backends.compensated import compensated
 from trochia.backends.live import Orders, Trouble
 from trochia.controller.controller import Controller
-from trochia.controller.interrupted import interrupted, keep
+from trochia.controller.interrupted import draft, interrupted, keep
 from trochia.controller.journal import Journal
 from trochia.controller.offsets import Keeper, kept_work
+from trochia.controller.preparing import Preparer
 from trochia.controller.recording import Recorder
 from trochia.controller.recording_commands import taken_by
 from trochia.errors import LinkError
@@ -94,6 +97,8 @@ class Runtime:
         self._recordings = recordings
         self._open(journal)
         self._commands: SimpleQueue[tuple[AnyCommand, Future[Ack]]] = SimpleQueue()
+        self._preparer = Preparer(self.controller, self._take, self._drafted)
+        self._draft = ("", "")  # text of a long program that is on the disk already, and its check sum
         self.watchers: list[Callable[[Status, Report], None]] = []
         self._status = self.controller.status(now)
         self._thread: threading.Thread | None = None
@@ -108,10 +113,17 @@ class Runtime:
         return self._status
 
     def send(self, command: AnyCommand) -> Future[Ack]:
-        """Have a command taken at the next turn; the future is its answer, set when status and journal show it."""
+        """Have a command taken at the next turn; the future is its answer, set when status and journal show it.
+
+        What needs a long program planned is taken when that is done; the turns go on meanwhile.
+        """
         answer: Future[Ack] = Future()
-        self._commands.put((command, answer))
+        if self._thread is None or not self._preparer.take(command, answer):
+            self._take(command, answer)
         return answer
+
+    def _take(self, command: AnyCommand, answer: Future[Ack]) -> None:
+        self._commands.put((command, answer))
 
     # -- the one that runs it
 
@@ -131,7 +143,7 @@ class Runtime:
         answers = self._take_commands(now, orders)
         self._order(orders, now)
         if answers or controller.state is not state or now - self._status.time >= STATUS - PERIOD / 2:
-            self._status = controller.status(now)
+            self._status = self._told(controller.status(now))
         trouble = self._keeper.look(controller.work) if self._keeper is not None else ""
         if trouble:
             controller.note("failure", text=f"offsets are not kept: {trouble}")
@@ -217,11 +229,23 @@ class Runtime:
                 with suppress(LinkError):
                     self.backend.order(order, now)
 
+    def _told(self, status: Status) -> Status:
+        """Return a status that says what is being planned."""
+        name = self._preparer.planning
+        return msgspec.structs.replace(status, message=f"planning {name}") if name else status
+
+    def _drafted(self, text: str) -> None:
+        """Bring the text of a long program to the disk, beside the turns."""
+        if self._journal is not None and self._draft[0] is not text:
+            with suppress(OSError):  # its job's beginning will say so
+                self._draft = (text, draft(self._journal.folder, text))
+
     def _write(self, now: float, kind: str, data: dict[str, object]) -> None:
         if self._journal is None:
             return
         if kind == "job":
-            data["program"] = keep(self._journal.folder, str(data["program"]))
+            text, digest = self._draft
+            data["program"] = keep(self._journal.folder, str(data["program"]), digest * (data["program"] is text))
         self._journal.write(kind, now, **data)
 
     def _safe_turn(self, now: float) -> None:

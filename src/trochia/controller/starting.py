@@ -63,13 +63,16 @@ def run_from(it: Controller, command: c.RunFrom, _now: float) -> str:
     return _go(it, ready, block_by_block=it.switches.single_block, inside=inside)
 
 
+def plan_here(it: Controller, text: str, name: str, *, exact: bool = False) -> Ready:
+    """Return the plan of a text from where the machine is."""
+    return it.readier.ready(text, name, work=it.work, at=it.position(), block_delete=it.switches.block_delete,
+                            exact=exact, bounded=known(it))  # fmt: skip
+
+
 def begin(it: Controller, text: str, name: str, *, block_by_block: bool) -> str:
     """Plan a text from here and run it."""
     check_overrides(it)
-    made = it.readier.ready(
-        text, name, work=it.work, at=it.position(), block_delete=it.switches.block_delete, exact=block_by_block,
-        bounded=known(it),
-    )  # fmt: skip
+    made = plan_here(it, text, name, exact=block_by_block)
     made = _asked(it, made, exact=block_by_block)
     for axis in it.machine.axes:
         low, high = made.plan.extents.get(axis.name, (0.0, 0.0))

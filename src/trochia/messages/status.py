@@ -102,7 +102,7 @@ class Status(msgspec.Struct, frozen=True, kw_only=True):
     queued_s
         Motion the backend still holds [s].
     message
-        What the program under way, or the last one, has said last.
+        What the program under way, or the last one, has said last; or which is being planned.
     """
 
     sequence: int

@@ -153,3 +153,24 @@ def test_a_hold_on_stairs_passes_one_corner_at_most(part):
     straight = sum(piece.duration for piece in ramp((state.speed, state.acceleration), (0.0, 0.0), 800.0, 20_000.0))
     # through the corner at 6.6 mm/s, 0.17 mm, and from there with a = 2 v² / L to rest: 0.077 s
     assert live.hold(t) - t <= straight + 0.026 + 0.077
+
+
+@pytest.mark.parametrize("profile", ["trapezoid", "s-curve"])
+def test_motion_behind_is_forgotten_and_changes_nothing(profile):
+    text = "G64 P0.01\nF1200\n" + "".join(f"G1 X{k * 0.5:g} Y{k % 2 * 0.3:g}\n" for k in range(1, 400)) + "M2\n"
+    (live, whole), (other, _) = live_of(text, profile), live_of(text, profile)
+    stop, most, in_hand = live.rules.stopping_time, 0, 0
+    for t in np.arange(0.0, 0.8 * whole.duration, 0.5).tolist():
+        ours, theirs = list(live.portions(t, t + 0.5)), list(other.portions(t, t + 0.5))
+        times = np.linspace(t, t + 0.5, 9)
+        assert (ours[0].position(times) == theirs[0].position(times)).all()
+        live.forget(t - 1.0)
+        in_hand = max(in_hand, len(live._legs[0].ahead.phases))
+        most = len(other._legs[0].ahead.phases)
+    assert stop < 1.0
+    assert in_hand < 0.75 * most
+    for held in (live, other):
+        held.hold(t)
+    assert live.end == other.end
+    assert live.back_up(live.end, 30.0) == other.back_up(other.end, 30.0)  # the path is still there
+    assert (live.state(live.end).position == other.state(other.end).position).all()

@@ -299,7 +299,7 @@ class Lookahead:
         if self.phases.base is not self._memory or self._at + count + len(rest) > len(self._memory):
             kept = copied(self.phases[:count])
             if self.phases.base is not self._memory or count + len(rest) > len(self._memory):
-                self._memory = np.empty(count + len(rest) + len(rest) // 4, dtype=PHASE)
+                self._memory = np.empty((count + len(rest)) * 5 // 4, dtype=PHASE)
             self._at = 0
             put(kept, self._memory[:count])
         end = self._at + count + len(rest)

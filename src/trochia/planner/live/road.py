@@ -205,7 +205,9 @@ class Road:
             self._lines[:], self._power[:] = 0, 0.0
 
     def trim(self, row: int) -> None:
-        """Drop the rows before ``row``."""
+        """Drop the rows before ``row``; of a path that is there as a whole nothing is."""
+        if self._moves is not None:
+            return
         self._first += row - self.base
         self.base = row
         self._show()
