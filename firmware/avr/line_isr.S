@@ -27,8 +27,8 @@
 #define MAY_SHINE _SFR_IO_ADDR(GPIOR0), 2
 #define MATCH _SFR_IO_ADDR(TIFR1), OCF1A
 #define SLOT 128
-#define AFTER 44   /* ticks from here to the next match, so that pulses are 64 apart */
-#define SOON 20
+#define AFTER 45   /* ticks from here to the next match, so that pulses are 64 apart */
+#define SOON 21
 #define TOO_LATE 4 /* times 256 ticks */
 #define FULLY 3    /* TROCHIA_FULLY */
 #define BEAMS 16   /* as in motion_parts.h */

@@ -3,26 +3,25 @@
 #include <avr/interrupt.h>
 #include <string.h>
 
-#include "board.h"
+#include "frames.h"
 #include "motion.h"
 #include "registers.h"
-
-#define TROCHIA_FRAME_KNOWN
-enum { PARTS = BOARD_MOTORS > 4 ? BOARD_MOTORS : 4, PAYLOAD = sizeof(trochia_span) + PARTS * sizeof(trochia_part) };
-enum { TROCHIA_FRAME = PAYLOAD + 4 };
-#include "shared/frame.h"
 
 #ifndef BAUD
 #define BAUD 115200
 #endif
 
-enum { BYTES_A_TURN = 16, SEND = 64, RECEIVE = 128 };
+enum { BYTES_A_TURN = 24, SEND = 64 };
+
+_Static_assert(__builtin_offsetof(trochia_frame_in, bytes) == 6, "frame.S relies on it");
+_Static_assert(LARGEST == sizeof(trochia_span) + (LARGEST - 12) / 20 * sizeof(trochia_part), "so does frames.h");
+_Static_assert(TROCHIA_CRC_WHOLE == 0xf0b8, "and this");
 enum { SEND_ACK = 1, SEND_STATUS = 2, SEND_ANSWER = 4 };
 
 extern uint16_t silent_slices;
 
-volatile uint8_t received[RECEIVE], received_head; /* line_io.S */
-static uint8_t received_tail;
+volatile uint8_t received[RECEIVE], received_head;
+uint8_t received_tail;
 uint8_t sending[SEND];
 volatile uint8_t send_next, send_end;
 static trochia_frame_in in;
@@ -76,7 +75,7 @@ static void answer(void) {
     told->reset = reset_by;
     told->session = session;
     told->expected = expected;
-    told->payload = PAYLOAD;
+    told->payload = LARGEST;
     told->reserved = 0;
     memcpy(told->board, board_name, sizeof told->board);
 }
@@ -175,18 +174,13 @@ static void take(void) {
 }
 
 void link_work(void) {
-    for (uint8_t i = 0; i < BYTES_A_TURN && received_tail != received_head; i++) {
-        uint8_t event = trochia_frame_take(&in, received[received_tail]);
-        received_tail = (uint8_t)(received_tail + 1) & (RECEIVE - 1);
-        if (event == TROCHIA_NOTHING)
-            continue;
-        if (event == TROCHIA_WHOLE)
-            take();
-        else if (greeted)
-            wanted |= SEND_ACK;
+    uint8_t event = received_tail == received_head ? TROCHIA_NOTHING : frame_run(&in, BYTES_A_TURN);
+    if (event == TROCHIA_WHOLE)
+        take();
+    else if (event == TROCHIA_BROKEN && greeted)
+        wanted |= SEND_ACK;
+    if (event != TROCHIA_NOTHING)
         trochia_frame_reset(&in);
-        break;
-    }
     if (wanted && !(UCSR0B & 1 << TXCIE0))
         send();
 }

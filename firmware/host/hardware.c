@@ -4,10 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "frames.h"
 #include "link.h"
 #include "motion_parts.h"
 
-enum { TURN = 400, WIDTH = 24, SEND = 64, RECEIVE = 128, BITS = 10, DIVIDER = 8, PULLED_UP_B = 6, PULLED_UP_C = 0x27 };
+enum { TURN = 400, WIDTH = 24, SEND = 64, BITS = 10, DIVIDER = 8, PULLED_UP_B = 6, PULLED_UP_C = 0x27 };
 enum { ACTS = 1, GRID = 2, BEAM_MODE_ADDRESS = 0xb0 };
 
 volatile uint8_t PINB, PINC, PIND, PORTB, PORTC, PORTD, DDRB, DDRC, DDRD;
@@ -18,7 +19,7 @@ uint8_t isr_pins __asm__("r2"), isr_fraction __asm__("r3"), isr_add __asm__("r4"
 uint8_t isr_high __asm__("r6"), isr_count __asm__("r7"), isr_at_low __asm__("r8"), isr_at_high __asm__("r9");
 uint8_t isr_tail __asm__("r11");
 
-extern volatile uint8_t received[RECEIVE], received_head, send_next, send_end;
+extern volatile uint8_t send_next, send_end;
 extern uint8_t sending[SEND];
 extern volatile uint16_t overflows;
 extern volatile uint8_t beam_head;
@@ -32,7 +33,17 @@ static uint8_t armed, sends, inputs_b, levels_b, levels_c, levels_d;
 static uint8_t *coming;
 static uint32_t head, tail, room;
 
-/* rows.S, grid.S: the shared C does the same. */
+/* rows.S, grid.S, frame.S: the shared C does the same. */
+
+uint8_t frame_run(trochia_frame_in *in, uint8_t most) {
+    while (most-- && received_tail != received_head) {
+        uint8_t event = trochia_frame_take(in, received[received_tail]);
+        received_tail = (uint8_t)(received_tail + 1) & (RECEIVE - 1);
+        if (event != TROCHIA_NOTHING)
+            return event;
+    }
+    return TROCHIA_NOTHING;
+}
 
 uint8_t row_full(trochia_motor *motor, trochia_row *row) {
     (void)motor, (void)row;
