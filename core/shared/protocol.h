@@ -35,7 +35,8 @@ enum trochia_frame_type {
     TROCHIA_HALT = 66,   /* stop at once: no steps, no light, drives off where the payload's byte is 1 */
     TROCHIA_ANSWER = 96, /* chip to host: trochia_answer to a hello */
     TROCHIA_STATUS = 97, /* trochia_status */
-    TROCHIA_ACK = 98     /* trochia_ack */
+    TROCHIA_ACK = 98,    /* trochia_ack, to orders */
+    TROCHIA_ROOM = 99    /* trochia_ack, unasked: there is room for a largest span again */
 };
 
 enum trochia_span_flag {

@@ -16,7 +16,7 @@ enum { BYTES_A_TURN = 24, SEND = 64 };
 _Static_assert(__builtin_offsetof(trochia_frame_in, bytes) == 6, "frame.S relies on it");
 _Static_assert(LARGEST == sizeof(trochia_span) + (LARGEST - 12) / 20 * sizeof(trochia_part), "so does frames.h");
 _Static_assert(TROCHIA_CRC_WHOLE == 0xf0b8, "and this");
-enum { SEND_ACK = 1, SEND_STATUS = 2, SEND_ANSWER = 4 };
+enum { SEND_ACK = 1, SEND_STATUS = 2, SEND_ANSWER = 4, SEND_ROOM = 8 };
 
 extern uint16_t silent_slices;
 
@@ -25,7 +25,7 @@ uint8_t received_tail;
 uint8_t sending[SEND];
 volatile uint8_t send_next, send_end;
 static trochia_frame_in in;
-static uint8_t expected, greeted, session, wanted, reset_by;
+static uint8_t expected, greeted, session, wanted, reset_by, cramped; /* the host thinks that there is no room */
 
 void link_setup(uint8_t reset_flags) {
     reset_by = reset_flags;
@@ -90,15 +90,18 @@ static void send(void) {
         wanted = 0;
         motion_tell(status);
         status->expected = expected;
+        cramped = status->room < LARGEST;
         motion_fill();
         put(TROCHIA_STATUS, sizeof *status);
     } else {
         trochia_ack *ack = (trochia_ack *)MADE;
+        uint8_t type = wanted & SEND_ACK ? TROCHIA_ACK : TROCHIA_ROOM;
         wanted = 0;
         ack->expected = expected;
         ack->epoch = motion_epoch();
         ack->room = motion_room();
-        put(TROCHIA_ACK, sizeof *ack);
+        cramped = ack->room < LARGEST;
+        put(type, sizeof *ack);
     }
 }
 
@@ -181,6 +184,8 @@ void link_work(void) {
         wanted |= SEND_ACK;
     if (event != TROCHIA_NOTHING)
         trochia_frame_reset(&in);
+    if (cramped && motion_room() >= LARGEST)
+        wanted |= SEND_ROOM;
     if (wanted && !(UCSR0B & 1 << TXCIE0))
         send();
 }

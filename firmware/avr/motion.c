@@ -4,7 +4,7 @@
 
 enum {
     LEAD = 1600,                              /* ticks from GO to the first slice */
-    ROOM = TROCHIA_CHUNK + TROCHIA_SPARE + 24 /* bytes of the ring; where there are fewer the line has its turn first */
+    ROOM = TROCHIA_CHUNK + TROCHIA_SPARE + 24 /* bytes of the ring: where there are fewer the line has its turn */
 };
 
 uint8_t step_ring[256 + 3 * BEAMS] __attribute__((section(".ring,\"aw\",@nobits;")));
@@ -310,7 +310,7 @@ static void fill(void) {
             cause = TROCHIA_LOW;
         trochia_timeline_end(&line);
         end_put = 1;
-    } while (trochia_timeline_space(&line) >= ROOM && !end_put);
+    } while (!end_put && trochia_timeline_space(&line) >= ROOM);
 }
 
 void motion_fill(void) {

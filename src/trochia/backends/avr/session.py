@@ -219,10 +219,10 @@ class Session:
             return self._answered(payload, now)
         if self.state not in {"open", "lost"}:
             return None
-        if kind == "ack" and len(payload) == ACK.itemsize:
+        if kind in {"ack", "room"} and len(payload) == ACK.itemsize:
             ack = np.frombuffer(payload, ACK)[0]
             self._heard, self.state = now, "open"
-            self._acknowledge(int(ack["expected"]), int(ack["room"]), now, repeat=True)
+            self._acknowledge(int(ack["expected"]), int(ack["room"]), now, repeat=kind == "ack")
         if kind == "status" and len(payload) == STATUS.itemsize:
             status = np.frombuffer(payload, STATUS)[0]
             self._heard, self.state = now, "open"
