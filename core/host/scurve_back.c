@@ -54,39 +54,50 @@ static double leave_straight(const trochia_track *back, const trochia_leg *leg, 
     return *s >= stretch->start ? t : -1.0;
 }
 
-/* The time on a leg from which the arrest ends at v; that from its start ends at `from`, below. */
+/* The time on a leg by which it has gained part of its speed. */
+static double time_of_part(const trochia_leg *leg, double part) {
+    double rise = part * leg->duration * (leg->a + 0.5 * leg->duration * leg->j);
+    return 2.0 * rise / (leg->a + sqrt(trochia_larger(leg->a * leg->a + 2.0 * leg->j * rise, 0.0)));
+}
+
+/* The time on a leg from which the arrest ends at v; that from its start ends at `from`, below.  How fast an arrest
+ * ends grows nearly as the speed it begins at: the false position is looked for in that. */
 static double leave_on(const trochia_track *back, const trochia_leg *leg, double from, double to, double v, double *s) {
-    double low = 0.0, high = leg->duration, under = from - v, over = to - v;
+    double low = 0.0, high = 1.0, under = from - v, over = to - v, found_at = -1.0;
     int stayed = 0;
     double straight = leave_straight(back, leg, v, s);
     if (straight >= 0.0)
         return straight;
-    for (int k = 0; k < 80 && high - low > EXACT * leg->duration; k++) {
-        double t = k % 5 < 4 && over > under && over < INFINITY ? low - under * (high - low) / (over - under)
-                                                                : 0.5 * (low + high);
-        if (!(t > low) || !(t < high))
-            t = 0.5 * (low + high);
-        trochia_arrest found = arrest_on(back, leg, t);
-        if (found.margin >= 0.0 && found.v <= v) {
-            over *= stayed == 1 ? 0.5 : 1.0;
+    for (int k = 0; k < 80 && high - low > EXACT; k++) {
+        double part = k % 6 < 5 && over > under && over < INFINITY ? low - under * (high - low) / (over - under)
+                                                                   : 0.5 * (low + high);
+        if (!(part > low) || !(part < high))
+            part = 0.5 * (low + high);
+        trochia_arrest found = arrest_on(back, leg, time_of_part(leg, part));
+        double off = found.margin >= 0.0 ? found.v - v : INFINITY;
+        if (off <= 0.0) {
+            over *= stayed == 1 ? trochia_lowered(off, under) : 1.0;
             stayed = 1;
-            low = t;
-            under = found.v - v;
+            low = found_at = part;
+            under = off;
+            *s = found.s;
             if (under >= -NEAR * v)
                 break;
         } else {
-            under *= stayed == -1 ? 0.5 : 1.0;
+            under *= stayed == -1 ? trochia_lowered(off, over) : 1.0;
             stayed = -1;
-            high = t;
-            over = found.margin >= 0.0 ? found.v - v : INFINITY;
+            high = part;
+            over = off;
             if (over < NEAR * v) {
-                low = t;
+                low = found_at = part;
+                *s = found.s;
                 break;
             }
         }
     }
-    *s = arrest_on(back, leg, low).s;
-    return low;
+    if (found_at < 0.0)
+        *s = arrest_on(back, leg, 0.0).s;
+    return time_of_part(leg, low);
 }
 
 /* Nearest stretch to the node (back in time the first) whose arrest at its start gets to v. */
@@ -112,7 +123,7 @@ double trochia_room_at(const trochia_course *course, const trochia_arrest *arres
         double to_v = stretches[k].peak_v, to_s = stretches[k].peak_s;
         double from_v = k + 1 == b ? stretches[b].birth_v : stretches[k + 1].peak_v;
         double from_s = k + 1 == b ? stretches[b].birth_s : stretches[k + 1].peak_s;
-        if (arrest->s > from_s)
+        if (arrest->s > from_s || arrest->s < trochia_smaller(from_s, to_s))
             return (v - from_v) / (to_v - from_v) * (to_s - from_s) + from_s - arrest->s;
     }
     return trochia_leave_at(course, arrest->stretch, v).s - arrest->s;

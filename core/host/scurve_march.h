@@ -54,6 +54,13 @@ static inline double trochia_way_after(double v, double a, double j, double t) {
     return t * (v + t * (0.5 * a + t * j * (1.0 / 6.0)));
 }
 
+/* Of the value at the end of a bracket that stays, in Anderson and Bjorck's form of the false position, where that at
+ * the other has become `now` and `was` before. */
+static inline double trochia_lowered(double now, double was) {
+    double part = was < INFINITY ? 1.0 - now / was : 0.5;
+    return part > 0.0 ? part : 0.5;
+}
+
 /* Nearer to the ceiling than this part, an even speed is kept: so near that where motion came from is forgotten. */
 static inline int trochia_is_still(const trochia_stretch *stretch, double v) {
     return v >= stretch->ceiling * (1.0 - 1e-11);

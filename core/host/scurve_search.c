@@ -3,6 +3,8 @@
 
 /* Exact enough: part of a run's time, and of a margin.  What is coarser here makes a plan depend on where it began. */
 static const double EXACT = 1e-14, NEAR = 1e-12;
+/* What a probe is to leave of a margin: a moment between the two is exact enough. */
+static const double AIM = 0.5 * 1e-12;
 /* Motion that may only just be arrested is: there is no way over what rounding leaves of a margin. */
 static const double STILL = 1e-9;
 /* Places of a leg that has been cut, where arrests are tried. */
@@ -70,26 +72,28 @@ static void narrow(const trochia_track *track, const trochia_course *course, int
     double under = trochia_smaller(trochia_larger(b->arrest.margin, 0.0), 1.0);
     if (b->low == 0.0 && under <= STILL && run->count && run->legs[0].a > 0.0)
         return;
+    double nearest = INFINITY, before = INFINITY; /* margins: the least so far, and that three probes ago */
     for (int k = 0; k < MOST && b->high - b->low > EXACT * run->time; k++) {
-        double time = b->low + under * (b->high - b->low) / (under - over);
-        if (k % 6 == 5 || !(time > b->low) || !(time < b->high))
+        double time = b->low + (under - AIM) * (b->high - b->low) / (under - over);
+        if ((k % 3 == 2 && nearest > 0.25 * before) || !(time > b->low) || !(time < b->high))
             time = 0.5 * (b->low + b->high);
         if (!(time > b->low) || !(time < b->high))
             break;
         int joining;
         trochia_arrest found = trochia_probe(track, course, i, run, time, &joining);
-        if (found.margin >= 0.0) { /* Anderson and Bjorck's form of the false position */
-            double part = 1.0 - trochia_smaller(found.margin, 1.0) / under;
-            over *= stayed == 1 ? (part > 0.0 ? part : 0.5) : 1.0;
+        before = k % 3 == 2 ? nearest : before;
+        nearest = trochia_smaller(nearest, fabs(found.margin));
+        if (found.margin >= 0.0) {
+            double left = trochia_smaller(found.margin, 1.0);
+            over *= stayed == 1 ? trochia_lowered(left, under) : 1.0;
             stayed = 1;
             b->low = time;
             b->arrest = found;
-            under = trochia_smaller(found.margin, 1.0);
+            under = left;
             if (under <= NEAR)
                 break;
         } else {
-            double part = 1.0 - found.margin / over;
-            under *= stayed == -1 ? (part > 0.0 ? part : 0.5) : 1.0;
+            under *= stayed == -1 ? trochia_lowered(found.margin, over) : 1.0;
             stayed = -1;
             b->high = time;
             over = found.margin;
