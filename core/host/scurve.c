@@ -113,7 +113,7 @@ static void follow(trochia_writer *w, const trochia_leave *leave, int64_t node) 
     while (n + 1 < stretch->legs && tau > legs[n].duration)
         tau -= legs[n++].duration;
     double v = trochia_speed_after(legs[n].v, legs[n].a, legs[n].j, tau), a = legs[n].a + tau * legs[n].j;
-    double rem = legs[n].from - trochia_way_after(legs[n].v, legs[n].a, legs[n].j, tau) - stretch->start;
+    double rem = (legs[n].from - stretch->start) - trochia_way_after(legs[n].v, legs[n].a, legs[n].j, tau);
     put_arrest(w, -1, leave->stretch, trochia_larger(rem, 0.0), v, trochia_larger(a, 0.0));
     put_back(w, &legs[n], tau);
     while (n-- > 0)

@@ -33,7 +33,7 @@ static trochia_leave slower_node(const trochia_course *course, int64_t b, double
 
 static trochia_arrest arrest_on(const trochia_track *back, const trochia_leg *leg, double t) {
     double way = trochia_way_after(leg->v, leg->a, leg->j, t);
-    double rem = leg->from - way - back->stretches[leg->stretch].start;
+    double rem = (leg->from - back->stretches[leg->stretch].start) - way; /* s jumps from one double to the next */
     double v = trochia_speed_after(leg->v, leg->a, leg->j, t);
     return trochia_arrest_from(back, (int64_t)leg->stretch, trochia_larger(rem, 0.0), v,
                                trochia_larger(leg->a + t * leg->j, 0.0), NULL, 0, NULL);

@@ -23,8 +23,9 @@ STRETCH = dtype_of("trochia_stretch")
 _BLOCK = 65536
 
 
-TRIES = 6  #: plans made before motion stops at every joint
+TRIES = 6  #: plans made before motion stops at every joint beside one that fails
 SAME = 1e-10  #: part by which places may be apart at a knot by rounding; a thousand times that for speeds
+ROUNDED = 4e-15  #: part of s that sums of it lose: near rest that little way is a speed that is none
 
 
 class Ramps:
@@ -70,19 +71,23 @@ class Ramps:
     def _plan(self, where: NDArray[np.uint64], seconds: NDArray[np.float64]) -> None:
         """Plan, and look at the joins: one in some ten thousands of programs has a join of the two passes that fails.
 
-        Motion then stops beside it, which both passes agree on; if that does not do, at every joint.
+        Motion then stops beside it, which both passes agree on; if that does not do, farther from it too, and at last
+        at every joint between the two stops that it lies between.
         """
         for attempt in range(TRIES + 1):
             self._pass(where, seconds)
-            broken = _jumps(self.knots)
-            if not len(broken) or attempt == TRIES:
+            broken = self.knots["segment"][_jumps(self.knots)].tolist()
+            if not broken or attempt == TRIES:
                 break
             segments = self._segments.copy()
-            if attempt == TRIES - 1:
-                segments["stop"] = 1
-            else:
-                beside = self.knots["segment"][broken].astype(np.int64)
-                segments["stop"][np.maximum(np.concatenate([beside, beside - 1]), 0)] = 1
+            stops = np.flatnonzero(segments["stop"])
+            for row in broken:
+                low, high = max(row - 1 - attempt, 0), row + 1 + attempt
+                if attempt == TRIES - 1:
+                    after = int(np.searchsorted(stops, row))
+                    low = int(stops[after - 1]) if after else 0
+                    high = int(stops[after]) if after < len(stops) else len(segments)
+                segments["stop"][low:high] = 1
             self._segments = segments
         self.knots.setflags(write=False)
 
@@ -173,6 +178,7 @@ def _jumps(knots: NDArray[np.void]) -> NDArray[np.intp]:
     v = here["v"] + t * (here["a"] + 0.5 * t * here["j"])
     way = t * (here["v"] + t * (0.5 * here["a"] + t * here["j"] / 6.0))
     off = np.abs(here["s"] + way - there["s"]) > SAME * (1.0 + there["s"])
-    off |= np.abs(v - there["v"]) > SAME * (1.0 + there["v"]) * 1e3
+    nothing = np.cbrt(4.5 * np.abs(here["j"]) * (ROUNDED * there["s"]) ** 2)
+    off |= np.abs(v - there["v"]) > SAME * (1.0 + there["v"]) * 1e3 + nothing
     off &= (here["flags"] == 0) & (np.arange(len(t)) < len(t) - 1)
     return np.flatnonzero(off)
