@@ -12,6 +12,7 @@ typedef struct {
     uint64_t made, room;
     double t;
     int64_t at;  /* stretch that motion has come to the start of */
+    double base; /* way to the stop from which s is counted there */
     double v, a; /* there */
 } trochia_writer;
 
@@ -26,6 +27,7 @@ static int goes_on(const trochia_knot *last, const trochia_knot *next, double ti
 
 static void put(trochia_writer *w, trochia_knot knot, double duration) {
     knot.t = w->t;
+    knot.s += w->base;
     w->t += duration;
     if (w->made && w->made <= w->room && duration > 0.0) {
         const trochia_knot *last = &w->knots[w->made - 1];
@@ -54,6 +56,14 @@ static void put_back(trochia_writer *w, const trochia_leg *leg, double until) {
     trochia_knot knot = {.s = s, .v = v, .a = a > 0.0 ? -a : 0.0, .j = leg->j, .segment = segment};
     if (until > 0.0)
         put(w, knot, until);
+}
+
+/* Goes on at the start of a stretch. */
+static void come_to(trochia_writer *w, int64_t at) {
+    const trochia_stretch *stretches = w->course.stretches;
+    w->at = at;
+    if (stretches[at].start == 0.0)
+        w->base += trochia_end_of(&stretches[at - 1]);
 }
 
 /* Rests before the stretch motion has come to. */
@@ -91,7 +101,7 @@ static void put_even(trochia_writer *w, double from, double to, double v, int64_
     const trochia_stretch *stretches = w->course.stretches;
     if (to - from <= TROCHIA_SAME_PLACE(to))
         return;
-    while (i + 1 < w->course.count && stretches[i + 1].start <= from + TROCHIA_SAME_PLACE(from))
+    while (i + 1 < w->course.count && !stretches[i].last && stretches[i + 1].start <= from + TROCHIA_SAME_PLACE(from))
         i++;
     trochia_leg leg = {from, to, v, 0.0, 0.0, (to - from) / v, 0.0, 0.0, (uint64_t)i};
     put_leg(w, &leg);
@@ -129,15 +139,15 @@ static void join(trochia_writer *w, const trochia_arrest *arrest, const trochia_
     int64_t node = (int64_t)stretches[arrest->stretch].birth;
     put_even(w, arrest->s, leave->s, arrest->v, arrest->stretch);
     follow(w, leave, node);
-    w->at = node;
+    come_to(w, node);
     w->v = leave->v_node;
     w->a = 0.0;
     if (node == w->course.count || !trochia_is_pinned(&stretches[node]))
         return;
     int64_t end = trochia_pinned_end(stretches, node);
-    put_even(w, stretches[node].start, stretches[end + 1].start, w->v, node);
+    put_even(w, stretches[node].start, trochia_end_of(&stretches[end]), w->v, node);
     w->a = stretches[end].kick_out * w->v * w->v;
-    w->at = end + 1;
+    come_to(w, end + 1);
 }
 
 /* Through the stretch motion has come to, or on to the next node. */
@@ -164,7 +174,7 @@ static void advance(trochia_writer *w) {
             put_leg(w, &run.legs[k]);
         w->a = run.a;
         w->v = run.v;
-        w->at++;
+        come_to(w, w->at + 1);
         return;
     }
     trochia_run_at(&ahead, w->at, &at, time, &at);

@@ -9,7 +9,7 @@
 #include "host/plan.h"
 
 typedef struct {
-    double length, start;            /* start: s summed over the stretches before */
+    double length, start;            /* start: s summed over the stretches since a stop, or the beginning */
     double ceiling;                  /* greatest v that may be held all along it */
     double free;                     /* v at which turning leaves nothing; infinite on lines */
     double along_a, bend_a;          /* greatest |q'| / A, |q''| / A */
@@ -32,7 +32,7 @@ typedef struct {
 
 /* Constant jerk within one stretch, forward or back in time. */
 typedef struct {
-    double from, to; /* s */
+    double from, to; /* s, as of the stretch */
     double v, a, j, duration;
     double end_v, end_s; /* of the pass back: how fast, and where, an arrest from its end would end */
     uint64_t stretch;

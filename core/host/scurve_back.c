@@ -142,7 +142,7 @@ trochia_leave trochia_leave_at(const trochia_course *course, int64_t i, double v
             return v < stretches[b].birth_v ? slower_node(course, b, v)
                                             : (trochia_leave){stretches[b].birth_s, leave.v_node, 0.0, b};
         if (stretches[b].node_v == 0.0)
-            leave.s = stretches[b].start;
+            leave.s = trochia_end_of(&stretches[b - 1]);
         return leave;
     }
     if (stretches[death].peak_v < v) {
@@ -264,7 +264,7 @@ static int64_t pass_from(trochia_course *course, int64_t b, double v, double a) 
     trochia_mover m = {b - 1, v, a, 0};
     int64_t ended = b;
     stretches[b].birth_v = a > 0.0 ? birth.v : v;
-    stretches[b].birth_s = a > 0.0 ? birth.s : stretches[b].start;
+    stretches[b].birth_s = a > 0.0 ? birth.s : trochia_end_of(&stretches[b - 1]);
     for (;; m.i--) {
         pass_stretch(course, b, &m);
         if (!trochia_is_barrier(&back, m.i) && m.v <= stretches[m.i - 1].ceiling * SUMMED)

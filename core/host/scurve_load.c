@@ -239,6 +239,8 @@ void trochia_scurve_load(const trochia_segment *segments, const double *pool, ui
         else
             load_joint(&segments[k], pool, limits->axes, &stretches[-1], &after);
         kick_in = after.kick_in;
+        if (stretches[-1].last)
+            s = 0.0;
     }
     *stretches = (trochia_stretch){.start = s};
 }

@@ -88,9 +88,14 @@ static inline int trochia_is_barrier(const trochia_track *track, int64_t i) {
     return track->stretches[track->by > 0 ? i : next].last || trochia_is_pinned(&track->stretches[next]);
 }
 
+/* s where a stretch ends: where the next one begins, but for a stop, behind which s begins anew. */
+static inline double trochia_end_of(const trochia_stretch *stretch) {
+    return stretch->start + stretch->length;
+}
+
 /* s where the track leaves stretch i. */
 static inline double trochia_exit(const trochia_track *track, int64_t i) {
-    return track->stretches[track->by > 0 ? i + 1 : i].start;
+    return track->by > 0 ? trochia_end_of(&track->stretches[i]) : track->stretches[i].start;
 }
 
 static inline double trochia_acceleration_left(const trochia_stretch *stretch, double v) {

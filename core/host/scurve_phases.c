@@ -32,14 +32,17 @@ static double time_of(const trochia_knot *knot, double target, double low, doubl
 }
 
 void trochia_scurve_starts(const trochia_stretch *stretches, uint64_t stretch_count, double *starts) {
-    double s = 0.0;
+    double base = 0.0;
     for (uint64_t k = 0; k < stretch_count; k++) {
+        if (k > 0 && stretches[k].start == 0.0)
+            base += trochia_end_of(&stretches[k - 1]);
         if (k == 0 || stretches[k].segment != stretches[k - 1].segment)
-            starts[stretches[k].segment] = s;
-        s += stretches[k].length;
+            starts[stretches[k].segment] = base + stretches[k].start;
     }
-    if (stretch_count)
-        starts[stretches[stretch_count - 1].segment + 1] = s;
+    if (stretch_count) {
+        const trochia_stretch *last = &stretches[stretch_count - 1];
+        starts[last->segment + 1] = base + trochia_end_of(last);
+    }
 }
 
 static trochia_phase phase_at(const trochia_knot *knot, const double *starts, uint64_t segment, double tau) {
