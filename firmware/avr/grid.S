@@ -66,18 +66,29 @@ row_place:
     .endr
     ret
 
-    .global row_clear /* (r24 place, r22 count), at least count bytes */
+    .global row_clear /* (r24 place, r22 count), at least count bytes, at most seven more */
 row_clear:
     mov r26, r24
     ldi r27, hi8(step_ring)
-1:  .rept 4
+    add r24, r22
+    brcs 2f
+    cpi r24, 249
+    brsh 2f
+1:  .rept 8
+    st X+, r1
+    .endr
+    subi r22, 8
+    brcs 3f
+    brne 1b
+    ret
+2:  .rept 4 /* round the ring's end */
     st X, r1
     inc r26
     .endr
     subi r22, 4
-    brcs 2f
-    brne 1b
-2:  ret
+    brcs 3f
+    brne 2b
+3:  ret
 
     .global slots_count /* (r24 place, r22 bytes above 0, r21:r20 counts of pins 1 to 7) */
 slots_count:
@@ -118,13 +129,10 @@ slots_pack:
     mov r30, r24
     ldi r27, hi8(step_ring)
     ldi r31, hi8(step_ring)
-    clr r18
 1:  ld r0, X
     inc r26
     tst r0
-    breq 4f
-    tst r18
-    brne 3f
+    breq 3f
 2:  st Z, r0
     inc r30
     dec r20
@@ -132,12 +140,13 @@ slots_pack:
     sub r30, r24
     mov r24, r30
     ret
-3:  lsl r18
-    ori r18, 1
+3:  ldi r18, 1
+4:  subi r18, -2 /* one more; the last slot has pulses */
+    dec r20
+    ld r0, X
+    inc r26
+    tst r0
+    breq 4b
     st Z, r18
     inc r30
-    clr r18
     rjmp 2b
-4:  inc r18
-    dec r20
-    rjmp 1b

@@ -181,6 +181,8 @@ loaded:
     arm SOON, late_load
     return
 late_load:
+    sbic ACTS /* no pulse, and its tick has gone by: at once */
+    rjmp act
     sts OCR1AH, r31
     sts OCR1AL, r30
     sub r30, AT_LOW

@@ -138,6 +138,24 @@ def test_a_host_that_falls_silent_is_followed_by_a_controlled_stop_in_the_dark(t
     assert (STATES[int(status["state"])], CAUSES[int(status["cause"])]) == ("stopped", "silence")
 
 
+@pytest.mark.parametrize("rates", [[160_000], [20_000, 21_000, 22_000]])
+def test_steps_of_the_slice_in_which_the_beam_goes_out_are_no_later_than_others(
+    talk: Callable[[str], Any], rates: list[float]
+):
+    """The queue runs low: the slice's end, the rate that falls and the light that goes out come at one tick."""
+    spans = steady(rates, 8, ticks=1 << 17, stride=100, slew=3000, power=200, rest=False)
+    told = talk("uno-stepdir")
+    told.session.order("switch", bytes([255, 1, 0, 0]))
+    status, wanted, events = stream(told, spans), executed(b"".join(spans), brake=0), told.events()
+    assert CAUSES[int(status["cause"])] == "low"
+    assert status["position"].tolist() == wanted.position.tolist()
+    late: list[NDArray[np.int64]] = []
+    for motor, pin in enumerate(STEPS[: len(rates)]):
+        late.append(edges(events, pin, 1) - wanted.pulses["tick"][wanted.pulses["pins"] >> motor & 1 == 1])
+    whole = np.concatenate(late)
+    assert whole.max() - np.median(whole) <= 10 * US
+
+
 @pytest.mark.parametrize("kind", [name for name, code in TYPES.items() if code < LOOSE])
 def test_orders_from_nowhere_move_nothing(talk: Callable[[str], Any], kind: str):
     told = talk("uno-stepdir")
