@@ -44,6 +44,7 @@ def members(enum: str) -> dict[str, int]:
 
 TYPES = members("enum trochia_frame_type")
 STATES = {value: name for name, value in members("enum trochia_state").items()}
+RUNNING = lib.TROCHIA_RUNNING
 CAUSES = {value: name for name, value in members("enum trochia_cause").items()}
 
 

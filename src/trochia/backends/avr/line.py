@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trochia.backends.avr.session import Greeted, Session, Told
-from trochia.backends.avr.transports import Transport, first_number
-from trochia.backends.avr.troubles import described
-from trochia.errors import LinkError, LinkTimeout, RemoteProtocolError
+from trochia.backends.avr.transports import Transport, first_number, unanswered
+from trochia.errors import LinkError, RemoteProtocolError
 from trochia.kernels.link import BEGIN, CAUSES, PUT, STATES
 
 if TYPE_CHECKING:
@@ -52,8 +51,7 @@ class BoardLine:
             self._turn()
             self._heard = self._now
             if self._now > end:
-                raise LinkTimeout(f"no board with Trochia's image answers: {described(self._session.strange)}",
-                                  hint="`trochia boards` looks what is there.")  # fmt: skip
+                raise unanswered(transport, self._session.strange)
         name = bytes(self._answer["board"]).rstrip(b"\0").decode("ascii", "replace")
         if name != board:
             raise RemoteProtocolError(f"the board is {name}, not {board}")

@@ -17,13 +17,13 @@ from trochia.backends.avr.clock import ChipClock
 from trochia.backends.avr.inputs import Inputs
 from trochia.backends.avr.session import Greeted, Session, Told
 from trochia.backends.avr.spans import SpanMaker, shortened, steps_made
-from trochia.backends.avr.transports import Transport, first_number
-from trochia.backends.avr.troubles import TROUBLES, described
+from trochia.backends.avr.transports import Transport, first_number, unanswered
+from trochia.backends.avr.troubles import TROUBLES
 from trochia.backends.avr.wiring import BOARDS, steps_per_unit, wire
 from trochia.backends.live import BUILT_IN, Orders, Report, Trouble
 from trochia.backends.queue import Queue
-from trochia.errors import LimitError, LinkError, LinkTimeout, LocalProtocolError, RemoteProtocolError
-from trochia.kernels.link import BEGIN, CAUSES, CUT, FULL_RATE, STATES
+from trochia.errors import LimitError, LinkError, LocalProtocolError, RemoteProtocolError
+from trochia.kernels.link import BEGIN, CAUSES, CUT, FULL_RATE, RUNNING, STATES
 from trochia.messages import Cause
 
 if TYPE_CHECKING:
@@ -106,14 +106,13 @@ class LiveAvr:
         while self.answer is None:
             self._breathe()
             if self._now - now > CONNECT:
-                raise LinkTimeout(
-                    f"no board with Trochia's image answers: {described(self.session.strange)}",
-                    hint="Is it the right port and baud rate?  `trochia boards` looks, `trochia flash` writes.",
-                )
-        self.session.ask()
-        self._asked = self._now
-        while self.status is None and self._now - now < CONNECT:
+                raise unanswered(self.transport, self.session.strange)
+        while (self.status is None or self.status["state"] == RUNNING) and self._now - now < CONNECT:
+            self.session.ask()  # a board that was not reset brakes first
+            self._asked = self._now
             self._breathe()
+        if self.status is not None:  # where it stands is called what is commanded
+            self._maker.offset = self._commanded() - self._positions() / self._scale
         self._now = now
         self.transport.rebase(now)
         self.clock = ChipClock(int(self.answer["clock"]))

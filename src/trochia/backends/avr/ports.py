@@ -116,16 +116,26 @@ def _asked(line: serial.SerialBase, port: str, boots: float, clock: Callable[[],
             said = (banner or spoken)[0].decode("ascii", "replace")
             return Found(port=port, kind="grbl", text=f"a GRBL board: {said}", baud=line.baudrate)
     for baud in BAUDS:
-        line.baudrate = baud
-        reader, end = FrameReader(), clock() + ANSWERS
-        while clock() < end:
-            line.write(question())
-            came = _listen(line, EVERY)
-            heard += came
-            for got in reader.feed(came):
-                if got.kind == TYPES["answer"] and len(got.payload) >= SCHEMA_BYTES:
-                    return _ours(port, baud, got.payload)
+        found = greeted(line, port, baud, heard, clock)
+        if found is not None:
+            return found
     return Found(port=port, kind="other" if heard else "silent", text=described(bytes(heard)))
+
+
+def greeted(
+    line: serial.SerialBase, port: str, baud: int, heard: bytearray, clock: Callable[[], float] = time.monotonic
+) -> Found | None:
+    """Say hello at a baud rate, and return who answers; what comes is added to what was heard."""
+    line.baudrate = baud
+    reader, end = FrameReader(), clock() + ANSWERS
+    while clock() < end:
+        line.write(question())
+        came = _listen(line, EVERY)
+        heard += came
+        for got in reader.feed(came):
+            if got.kind == TYPES["answer"] and len(got.payload) >= SCHEMA_BYTES:
+                return _ours(port, baud, got.payload)
+    return None
 
 
 def _listen(line: serial.SerialBase, seconds: float) -> bytes:
@@ -138,7 +148,7 @@ def _ours(port: str, baud: int, payload: bytes) -> Found:
     """Return what an answer says; one of another version may be shorter or longer."""
     answer = np.frombuffer(payload[: ANSWER.itemsize].ljust(ANSWER.itemsize, b"\0"), ANSWER)[0]
     board, schema = bytes(answer["board"]).rstrip(b"\0").decode("ascii", "replace"), int(answer["schema"])
-    text = f"{board} at {baud} baud, schema {schema:08x}"
+    text = f"{board or 'our image'} at {baud} baud, schema {schema:08x}"
     if schema != SCHEMA:
-        text += f"; this program speaks {SCHEMA:08x}: write its image with `trochia flash {board}`"
+        text += f"; this program speaks {SCHEMA:08x}: write its image with `trochia flash {board or 'BOARD'}`"
     return Found(port=port, kind="trochia", text=text, board=board, baud=baud, schema=schema)

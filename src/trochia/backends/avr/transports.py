@@ -10,9 +10,11 @@ from typing import TYPE_CHECKING, Protocol
 
 import serial
 
-from trochia.backends.avr.ports import opened
+from trochia.backends.avr.images import BAUDS
+from trochia.backends.avr.ports import Found, greeted, opened
+from trochia.backends.avr.troubles import described
 from trochia.backends.simulated_chip import SimulatedChip
-from trochia.errors import LinkError
+from trochia.errors import LinkError, LinkTimeout
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -53,6 +55,18 @@ class Transport(Protocol):
     def close(self) -> None:
         """Let go of it."""
         ...
+
+
+def unanswered(transport: Transport, heard: bytes) -> LinkTimeout:
+    """Return what is wrong where our hello has no answer; on a port other baud rates are tried."""
+    found = transport.elsewhere() if isinstance(transport, SerialTransport) else None
+    if found is not None:
+        return LinkTimeout(f"nothing answers at {transport.baud} baud; there is {found.text}",
+                           hint=f"Say --baud {found.baud}.")  # fmt: skip
+    return LinkTimeout(
+        f"no board with Trochia's image answers: {described(heard)}",
+        hint="Is it the right port and baud rate?  `trochia boards` looks; `trochia flash` writes.",
+    )
 
 
 def first_number(transport: Transport) -> int:
@@ -123,6 +137,14 @@ class SerialTransport:
             return bytes(self._port.read(4096))
         except (serial.SerialException, OSError) as error:
             raise LinkError(f"the board on {self.name} is gone: {error}", hint="Is the cable in?") from None
+
+    def elsewhere(self) -> Found | None:
+        """Return what answers at another baud rate."""
+        try:
+            tried = (greeted(self._port, self.name, baud, bytearray()) for baud in BAUDS if baud != self.baud)
+            return next((found for found in tried if found is not None), None)
+        except (serial.SerialException, OSError):
+            return None
 
     def rebase(self, now: float) -> None:
         """See :class:`Transport`; time is what it is."""
