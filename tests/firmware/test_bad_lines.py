@@ -14,7 +14,7 @@ import trochia
 from trochia.backends.avr.live_avr import LiveAvr
 from trochia.backends.avr.transports import SerialTransport
 from trochia.backends.live import Orders
-from trochia.backends.segments import sampled
+from trochia.backends.segments import Segments, sampled
 from trochia.errors import LinkError, LinkTimeout, RemoteProtocolError, VersionMismatch
 from trochia.kernels.link import ANSWER, CAUSES, SCHEMA, TYPES, FrameReader, frame
 
@@ -79,9 +79,9 @@ def test_another_version(plug: Callable[..., Any], connect: Callable[..., LiveAv
 
 
 def test_another_baud_rate(plug: Callable[..., Any], connect: Callable[..., LiveAvr]):
-    with pytest.raises(LinkTimeout, match="no board with Trochia's image answers") as caught:
+    with pytest.raises(LinkTimeout, match="at 115200 baud; there is uno-stepdir at 1000000 baud, schema") as caught:
         connect(plug("uno-stepdir", baud=1_000_000))
-    assert "baud rate" in str(caught.value)
+    assert "Say --baud 1000000" in str(caught.value)
 
 
 noise = itertools.cycle(np.random.default_rng(3).bytes(997))
@@ -104,14 +104,17 @@ def test_strangers(
     assert text in str(caught.value)
 
 
+def motion(machine: Machine, way: float) -> Segments:
+    """Return a motion along X from where it is 0."""
+    plan = trochia.plan(trochia.gcode(f"G1 G21 X{way} F600\nM2\n", machine), machine).trajectory
+    times = np.linspace(0.0, plan.duration, round(plan.duration / 0.005))
+    return sampled(plan, machine.kinematics.matrix, times, np.full(len(times) - 1, 4.0))
+
+
 def feed(backend: LiveAvr, board: Any, machine: Machine) -> float:
     """Start a motion of two seconds; returns how far X goes."""
-    plan = trochia.plan(trochia.gcode("G1 G21 X20 F600\nM2\n", machine), machine).trajectory
-    times = np.linspace(0.0, plan.duration, round(plan.duration / 0.005))
-    now = clock(board)
-    backend.order(Orders(enable=True), now)
-    slew = np.full(len(times) - 1, 4.0)
-    backend.order(Orders(segments=sampled(plan, machine.kinematics.matrix, times, slew)), now)
+    backend.order(Orders(enable=True), clock(board))
+    backend.order(Orders(segments=motion(machine, 20.0)), clock(board))
     return 20.0
 
 
@@ -163,4 +166,28 @@ def test_a_cable_pulled_in_motion_and_put_back(
     assert 600 < position < 4000
     gaps = np.diff(steps["cycle"].astype(np.int64))
     assert gaps[-3:].min() > 1.5 * np.median(gaps)  # it braked
-    assert poll(again, board, lambda _now: True).still
+    report = poll(again, board, lambda _now: True)
+    assert report.still
+    assert report.commanded.tolist() == [position / 200, 0.0, 0.0]  # the plan goes on from where it stands
+    back = motion(machine, position / 200)
+    back.joints[:] *= -1.0
+    back.joints[:, 0, 0] += position / 200
+    again.order(Orders(enable=True), clock(board))
+    again.order(Orders(segments=back, at=report.executed), clock(board))
+    poll(again, board, lambda now: now.still and now.executed > report.executed + 0.2)
+    poll(again, board, lambda _now: again.status["state"] == 0)
+    assert again.status["position"].tolist() == [0] * 6
+
+
+def test_the_next_program_on_a_board_that_was_not_reset(
+    plug: Callable[..., Any], connect: Callable[..., LiveAvr], machine: Machine
+):
+    board = plug("uno-stepdir")
+    first = connect(board)
+    feed(first, board, machine)
+    poll(first, board, lambda now: now.commanded[0] > 1.0)
+    first.transport.close()  # the program is gone, the board is not reset
+    again = connect(board)
+    assert again.status["state"] != 2  # it has braked for the next
+    place = again.poll(clock(board)).commanded[0]
+    assert place == again.status["position"][0] / 200 > 1.0

@@ -52,5 +52,6 @@ def command(
     if not yes:
         click.confirm(f"write it to the board on {device}?", abort=True, err=True)
     ports.opened(device, bootloader).close()  # in use, not there, not ours: known before anything is written
+    click.echo("writing and reading back: half a minute, or up to a minute where no bootloader answers")
     flash.write(kind, image, device, bootloader=bootloader)
     click.echo(f"{device} holds {board} now")

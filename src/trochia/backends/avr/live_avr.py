@@ -111,8 +111,8 @@ class LiveAvr:
             self.session.ask()  # a board that was not reset brakes first
             self._asked = self._now
             self._breathe()
-        if self.status is not None:  # where it stands is called what is commanded
-            self._maker.offset = self._commanded() - self._positions() / self._scale
+        if self.status is not None:
+            self._queue.clear(self._positions() / self._scale, self._executed)
         self._now = now
         self.transport.rebase(now)
         self.clock = ChipClock(int(self.answer["clock"]))

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
+PULLED = ("returned no data", "Input/output error", "No such device")  #: what a port says whose board is gone
+
+
 class Transport(Protocol):
     """Bytes to and from one chip.
 
@@ -136,7 +139,9 @@ class SerialTransport:
                 self._port.write(data)
             return bytes(self._port.read(4096))
         except (serial.SerialException, OSError) as error:
-            raise LinkError(f"the board on {self.name} is gone: {error}", hint="Is the cable in?") from None
+            pulled = any(words in str(error) for words in PULLED)
+            why = "nobody is at the other end any more" if pulled else str(error)
+            raise LinkError(f"the board on {self.name} is gone: {why}", hint="Is the cable in?") from None
 
     def elsewhere(self) -> Found | None:
         """Return what answers at another baud rate."""
