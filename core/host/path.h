@@ -77,6 +77,7 @@ typedef struct {
     const trochia_move *moves;
     const uint8_t *rests; /* per move: 1 = motion is at rest before it */
     uint64_t count;       /* moves */
+    uint64_t first_row;   /* number of the first of them since the program's start */
     double start[9];      /* position before the first move */
     double tolerance;     /* of the machine, for G64 without P; blends are left out where tolerance < 0 */
     uint32_t axes;        /* columns of the path */

@@ -41,6 +41,14 @@ typedef struct {
     double length;
 } trochia_blend;
 
+/* Sixteen rows of the program, and what Q may do to them: see path_even.c. */
+typedef struct {
+    uint64_t number;
+    double shortest, longest; /* chord */
+    uint32_t level;
+    uint8_t known, even;
+} trochia_cell;
+
 typedef struct {
     const trochia_path_input *in;
     trochia_path_output *out;
@@ -49,6 +57,7 @@ typedef struct {
     uint8_t halt;
     uint64_t piece, piece_end; /* pieces of the spline being read that are still to come */
     double way, way_left;      /* of all of it, and of these */
+    trochia_cell cells[8];     /* those near the row being read, by number */
 } trochia_reader;
 
 void trochia_start_reader(trochia_reader *r);

@@ -7,17 +7,11 @@
 #include <math.h>
 #include <string.h>
 
-#include "host/path_curve.h"
+#include "host/path_merge.h"
 
 static const double PART = 0.25; /* of P: chords grow to 0.5 sqrt(8 R P), whose joints then need P / 3 */
-enum { MOST = 16 };              /* points between: a run of n lines costs n MOST */
 
-typedef struct {
-    double base[9], points[MOST][9];
-    uint32_t count;
-} run;
-
-static double blend_within(const trochia_path_input *in, const trochia_move *move) {
+double trochia_merge_within(const trochia_path_input *in, const trochia_move *move) {
     if (in->tolerance < 0.0 || move->kind != TROCHIA_FEED || move->law != TROCHIA_PER_SECOND)
         return 0.0;
     if (move->path_mode == TROCHIA_BLEND_DEFAULT)
@@ -25,13 +19,12 @@ static double blend_within(const trochia_path_input *in, const trochia_move *mov
     return move->path_mode == TROCHIA_BLEND ? fmin(move->tolerance[1], PART * move->tolerance[0]) : 0.0;
 }
 
-static int alike(const trochia_move *a, const trochia_move *b) {
+int trochia_moves_alike(const trochia_move *a, const trochia_move *b) {
     return b->kind == TROCHIA_FEED && b->law == TROCHIA_PER_SECOND && a->rate == b->rate && a->power == b->power &&
            a->path_mode == b->path_mode && a->tolerance[0] == b->tolerance[0] && a->tolerance[1] == b->tolerance[1];
 }
 
-/* Greatest distance of the run's points from the line to `end`; infinity where they do not come in order. */
-static double distance_of(const trochia_frame *frame, const run *run, const double *end) {
+double trochia_run_distance(const trochia_frame *frame, const trochia_run *run, const double *end) {
     uint32_t n = frame->n;
     double step[9], apart[9], square = 0.0, before = 0.0, greatest = 0.0;
     for (uint32_t i = 0; i < n; i++) {
@@ -56,13 +49,14 @@ static double distance_of(const trochia_frame *frame, const run *run, const doub
 }
 
 /* Takes the rows from `row` on that join the line just read; returns the first that does not. */
-static uint64_t extend(trochia_reader *r, uint64_t row, double q, run *run, trochia_curve *curve) {
+static uint64_t extend(trochia_reader *r, uint64_t row, double q, trochia_run *run, trochia_curve *curve) {
     const trochia_path_input *in = r->in;
     uint32_t n = r->frame.n;
     double end[9], taken = 0.0;
-    for (; row < in->count && run->count < MOST && !in->rests[row]; row++) {
+    for (; row < in->count && run->count < TROCHIA_RUN && !in->rests[row]; row++) {
         const trochia_move *move = &in->moves[row];
-        if (!alike(&in->moves[row - 1], move) || trochia_moves_absent(in, move))
+        if (!trochia_moves_alike(&in->moves[row - 1], move) || trochia_moves_absent(in, move) ||
+            trochia_even_begins(r, row))
             break;
         int still = 1;
         for (uint32_t i = 0; i < n; i++) {
@@ -72,7 +66,7 @@ static uint64_t extend(trochia_reader *r, uint64_t row, double q, run *run, troc
         if (still)
             continue;
         memcpy(run->points[run->count++], r->position, n * sizeof *end);
-        double greatest = distance_of(&r->frame, run, end);
+        double greatest = trochia_run_distance(&r->frame, run, end);
         if (greatest > q)
             break;
         taken = greatest;
@@ -83,16 +77,31 @@ static uint64_t extend(trochia_reader *r, uint64_t row, double q, run *run, troc
     return row;
 }
 
+/* Takes the rows from `row` up to `until`, of which it is known that they join the line just read. */
+static uint64_t join(trochia_reader *r, uint64_t row, uint64_t until, trochia_run *run, trochia_curve *curve) {
+    const trochia_path_input *in = r->in;
+    for (; row < until; row++) {
+        memcpy(run->points[run->count++], r->position, r->frame.n * sizeof *r->position);
+        for (uint32_t i = 0; i < r->frame.n; i++)
+            r->position[i] = in->moves[row].target[in->columns[i]];
+        r->out->merged_count++;
+    }
+    if (run->count)
+        curve->tolerance -= trochia_run_distance(&r->frame, run, r->position);
+    return row;
+}
+
 int32_t trochia_read_merged(trochia_reader *r, uint64_t *row, trochia_curve *curve) {
-    run run = {.count = 0};
+    trochia_run run = {.count = 0};
     memcpy(run.base, r->position, sizeof run.base);
     uint64_t first = *row, merged = r->out->merged_count;
     int32_t wrong = trochia_read_curve(r, first, curve);
     *row = trochia_next_row(r, first);
-    double q = blend_within(r->in, &r->in->moves[first]);
+    double q = trochia_merge_within(r->in, &r->in->moves[first]);
     if (wrong || !(curve->length > 0.0 && q > 0.0))
         return wrong;
-    *row = extend(r, *row, q, &run, curve);
+    uint32_t even = trochia_even_rows(r, first);
+    *row = even ? join(r, *row, first + even, &run, curve) : extend(r, *row, q, &run, curve);
     if (r->out->merged_count > merged) {
         double end[9];
         memcpy(end, r->position, sizeof end);

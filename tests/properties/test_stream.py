@@ -14,7 +14,7 @@ from trochia.planner import PROFILES, corners, path_of, plan
 from trochia.planner.live import StreamPlanner, paving, stream
 from trochia.program import MOVE, Dwell, MoveKind, Program, Spindle
 
-KINDS = ("walk", "wave", "zig-zag", "hatch", "long lines")
+KINDS = ("walk", "wave", "zig-zag", "hatch", "long lines", "even")
 DRAWN = st.tuples(st.sampled_from(KINDS), st.integers(1, 600), st.integers(0, 2**16))
 
 
@@ -24,7 +24,7 @@ def _small():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(paving, "_FIRST", 32)
         patch.setattr(paving, "_CHUNK", 64)
-        patch.setattr(paving, "REACH", 40)
+        patch.setattr(paving, "REACH", 60)
         patch.setattr(corners, "MOST", 24)
         patch.setattr(stream, "WINDOW", 8.0)
         yield
@@ -40,6 +40,9 @@ def points(kind, count, chance):
         return np.stack([u, chance.uniform(0.01, 1) * (k % 2), 0 * u], axis=1)
     if kind == "hatch":
         return np.stack([40.0 * ((k + 1) // 2 % 2), 0.2 * (k // 2), 0 * u], axis=1)
+    if kind == "even":  # chords of one length on a curve, so that Q drops points by an even stride
+        heading = np.cumsum(0.004 + 0.03 * np.sin(u / chance.uniform(3, 30)) ** 2)
+        return np.cumsum(0.3 * np.stack([np.cos(heading), np.sin(heading), 0 * u], axis=1), axis=0)
     return chance.uniform(-200, 200, (count, 3))
 
 
@@ -50,6 +53,8 @@ def program_of(kind, count, seed):
     moves["target"][:, :3], moves["line"] = points(kind, count, chance), np.arange(1, count + 1)
     moves["kind"] = np.where(chance.uniform(size=count) < 0.02, MoveKind.RAPID, MoveKind.FEED)
     moves["rate"] = np.where(moves["kind"] == MoveKind.RAPID, 0.0, 10 ** chance.uniform(0.5, 2.3))
+    if kind == "even":
+        moves["kind"], moves["rate"] = MoveKind.FEED, 100.0
     moves["power"] = 3000.0
     at = sorted(int(a) for a in chance.integers(0, count, 3))
     actions = (

@@ -66,6 +66,7 @@ def build(
     splines: tuple[NDArray[np.void], NDArray[np.uint64], float] | None = None,
     absent: Sequence[int] = (),
     room: Room | None = None,
+    first_row: int = 0,
 ) -> tuple[NDArray[np.void], NDArray[np.float64], int, tuple[str, int] | None]:
     """Return the segments and coefficients of a program's moves, how many were merged, and what stopped the work.
 
@@ -94,6 +95,8 @@ def build(
         Which of the nine letters must not move.
     room
         Where the path is built; None: in memory of its own.
+    first_row
+        Number of the first of the moves since the program's start.
 
     Returns
     -------
@@ -128,7 +131,7 @@ def build(
     flags = np.ascontiguousarray(rests, dtype=np.uint8)
     given.moves, given.rests = pointer(moves, "trochia_move *"), pointer(flags, "uint8_t *")
     given.count, given.axes, given.tolerance, given.continuity = count, axes, tolerance, continuity
-    given.overlap = overlap
+    given.overlap, given.first_row = overlap, first_row
     if limits is not None:
         if limits.shape != (3, axes) or not (limits > 0.0).all():
             raise ValueError("limits are positive, (3, axes)")

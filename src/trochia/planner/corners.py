@@ -31,12 +31,14 @@ SAME = 1e-10  #: part of a time by which a section is slower only by rounding
 _ROUNDS = 4  #: a joint between two sections may leave more room once one of them stops
 
 
-def path_of(program: Program, machine: Machine, profile: Profile, *, room: Room | None = None) -> Toolpath:
+def path_of(
+    program: Program, machine: Machine, profile: Profile, *, room: Room | None = None, first_row: int = 0
+) -> Toolpath:
     """Return the path of a program for a profile, with stops where passing the corners between two stops is slower.
 
     Parameters
     ----------
-    room
+    room, first_row
         As in :func:`trochia.toolpath.build`.
 
     Raises
@@ -44,7 +46,7 @@ def path_of(program: Program, machine: Machine, profile: Profile, *, room: Room 
     PlanningError, LimitError
         As :func:`trochia.toolpath.build`; LimitError also where the machine lacks what the profile needs.
     """
-    path = build(program, machine, continuity=profile.continuity, room=room)
+    path = build(program, machine, continuity=profile.continuity, room=room, first_row=first_row)
     for _ in range(_ROUNDS):
         slower = _slower(program, machine, profile, path)
         if not slower.any():
@@ -52,7 +54,7 @@ def path_of(program: Program, machine: Machine, profile: Profile, *, room: Room 
         moves = program.moves.copy()
         moves["path_mode"][slower] = PathMode.EXACT_PATH
         program = replace(program, moves=moves)
-        path = build(program, machine, continuity=profile.continuity, room=room)
+        path = build(program, machine, continuity=profile.continuity, room=room, first_row=first_row)
     return path
 
 

@@ -25,7 +25,7 @@ SPLINE_ERROR = 1e-4  #: mm: how far a spline's cubics by length may lie from the
 
 def build(
     program: Program, machine: Machine, *, blend: bool = True, continuity: int = 1, overlap: bool = True,
-    room: kernel.Room | None = None,
+    room: kernel.Room | None = None, first_row: int = 0,
 ) -> Toolpath:  # fmt: skip
     """Return the path of a program on a machine.
 
@@ -45,6 +45,8 @@ def build(
         but along the path alone, so that acceleration need not.
     room
         Where the path is built, if it may be gone when the next one is built there.
+    first_row
+        Number of the program's first move, where it is a piece of another one.
 
     Raises
     ------
@@ -60,7 +62,7 @@ def build(
     segments, pool, merged, fault = kernel.build(
         program.moves, _rests(program, machine), start=program.start, columns=columns, absent=absent,
         tolerance=machine.path_tolerance if blend else -1.0, continuity=continuity, overlap=overlap,
-        limits=_limits(machine), splines=_splines(program), room=room,
+        limits=_limits(machine), splines=_splines(program), room=room, first_row=first_row,
     )  # fmt: skip
     if fault and fault[0] == "axis":
         _refuse_absent(program, machine, absent)

@@ -141,7 +141,7 @@ class _Paver:
         start = self._program.start if base == held.base else held.since(base - 1)["target"][0].copy()
         program = replace(self._program, start=start, moves=moves, actions=tuple(actions), splines=self._splines)
         program = _own_splines(program, 0) if len(self._splines) else program
-        path = path_of(program, self._machine, self._profile, room=self._room)
+        path = path_of(program, self._machine, self._profile, room=self._room, first_row=base)
         return program, path, bisect_left(path.segments["move"], max(self._done - base, 0))
 
     def _fits(self, path: Toolpath, first: int) -> bool:
