@@ -287,7 +287,7 @@ static void fill(void) {
     do {
         if (line.length == 0 && (uint8_t)(line.marked - slice_done) >= TROCHIA_AHEAD)
             return;
-        uint8_t head = line.head, told = trochia_timeline_fill(&line);
+        uint8_t head = line.head, dense = line.dense, told = trochia_timeline_fill(&line);
         slices[(told == TROCHIA_SLICED ? line.marked - 1 : line.marked) & (SLICES - 1)].rate = line.rate;
         if (told == TROCHIA_SLICED) {
             note_slice();
@@ -298,8 +298,8 @@ static void fill(void) {
             next_pixel();
             continue;
         }
-        if (told == TROCHIA_CROWDED || (told == TROCHIA_FULL && line.head == head))
-            return;
+        if (told == TROCHIA_CROWDED || (told == TROCHIA_FULL && line.head == head && line.dense == dense))
+            return; /* where a dense chunk turned out empty there is more to come */
         if (told == TROCHIA_FULL)
             continue;
         if (told == TROCHIA_NEED && trochia_timeline_space(&line) >= 20 && take_up())

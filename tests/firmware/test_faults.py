@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import shutil
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -107,3 +108,13 @@ def test_a_chip_that_falls_dumb_is_found(host_chip: Path):
     with pytest.raises(AssertionError, match="it hangs"):
         run.whole()
     transport.close()
+
+
+@pytest.mark.parametrize("seed", [589, 666])
+def test_motion_that_begins_with_a_step_or_two_far_apart(
+    chip_program: Path, board_image: Callable[[str], Path], seed: int
+):
+    """The line of pulses is filled before it is run through, also where its first stretch holds next to nothing."""
+    case = replace(session.case_of(seed), start=(), at_hold=(), at_reconnect=(), rate=0.0, hold=None)
+    told = session.run(case, chip_program, board_image("uno-stepdir-1000000"))
+    assert told.ends == ["same", "same"]
