@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trochia.backends.simulated_chip import PIN
+from trochia.backends.simulated_chip import PIN, PWM
 from trochia.kernels.link import STATES
 
 if TYPE_CHECKING:
@@ -16,6 +16,16 @@ if TYPE_CHECKING:
 def edges(events: NDArray[np.void], pin: str, level: int) -> NDArray[np.int64]:
     mine = (events["kind"] == PIN) & (events["unit"] == pin[0].encode()) & (events["line"] == int(pin[1:]))
     return events["cycle"][mine & (events["value"] == level)].astype(np.int64)
+
+
+def duties(events: NDArray[np.void]) -> list[tuple[int, int]]:
+    """Return when the beam's duty changed [cycles], and to what."""
+    beam = events[(events["kind"] == PWM) & (events["unit"] == b"2") & (events["line"] == 0)]
+    seen: list[tuple[int, int]] = []
+    for cycle, value in zip(beam["cycle"].tolist(), (beam["value"] & 255).tolist(), strict=True):
+        if value and (not seen or seen[-1][1] != value):
+            seen.append((cycle, value))
+    return seen
 
 
 def stream(told: Any, spans: list[bytes], *, status: float = 0.01) -> Any:

@@ -12,7 +12,7 @@
 #define BOARD_MOTORS 4
 #define BOARD_INPUTS 6
 #define BOARD_OUTPUTS 2
-#define BOARD_QUEUE 600
+#define BOARD_QUEUE 592
 #define BOARD_STEPS PIND
 #define BOARD_FOURTH 1 /* bit of an entry */
 #define BEAM_DUTY OCR2A

@@ -20,7 +20,7 @@ _chip = sys.modules["chip_motion"]
 edges, stream = _chip.edges, _chip.stream
 CLOCK = 16e6
 US = 16  # cycles
-STEPS = ("D2", "D3", "D4")
+STEPS = ("D2", "D3", "D4", "B4")
 MODE = 0xB0  # TCCR2A: 0 where the beam's pin is low
 
 
@@ -34,6 +34,8 @@ def steady(*arguments: Any, **named: Any) -> list[bytes]:
         ([160_000], 1 << 18, 10),
         ([200_000], 1 << 18, 15),
         ([33_000, 33_400, 34_000], 1 << 18, 10),
+        ([33_000, 33_400, 34_000], 1 << 17, 10),
+        ([20_000, 20_100, 20_200, 20_300], 1 << 17, 10),
         ([40_000, 39_000, 41_000], 1 << 19, 10),
     ],
 )
@@ -56,6 +58,36 @@ def test_rates_without_a_missed_tick(talk: Callable[[str], Any], rates: list[flo
     assert whole.max() - np.median(whole) <= latest * US
     assert np.median(whole) - whole.min() <= 2 * US
     assert np.count_nonzero((events["kind"] == LOST) & (events["value"] == 0)) <= 2  # sent again
+    assert free(told) >= 300
+
+
+def free(told: Any) -> int:
+    """Bytes of memory that nothing has used since reset."""
+    told.answer = None
+    told.session.greet(told.now)
+    told.pass_on(0.02)
+    return int(told.answer["free"])
+
+
+@pytest.mark.parametrize("how", ["brake", "halt", "low"])
+def test_four_motors_leave_as_much_memory_however_they_stop(talk: Callable[[str], Any], how: str):
+    spans = steady([12_000, 12_400, 12_900, 13_000], 8, ticks=1 << 18, stride=40, slew=3000, rest=False, power=9)
+    told = talk("uno-stepdir")
+    told.switch(enable=1)
+    told.begin()
+    for span in spans[:6]:
+        told.session.order("span", span)
+    told.pass_on(0.02)
+    told.session.order("go")
+    told.pass_on(0.03)
+    if how == "brake":
+        told.session.order("brake")
+    elif how == "halt":
+        told.session.halt(drives_off=True)
+    told.pass_on(0.1)
+    status = told.ask()
+    assert CAUSES[int(status["cause"])] == ("low" if how == "low" else "ordered")
+    assert free(told) >= 300
 
 
 def running(

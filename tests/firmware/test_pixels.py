@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from trochia.backends.avr.powers import Powers
-from trochia.backends.simulated_chip import PWM
 from trochia.kernels.link import CAUSES, PIXELS, SPAN, executed
 
 if TYPE_CHECKING:
@@ -19,7 +18,6 @@ if TYPE_CHECKING:
 
 CLOCK = 16e6
 US = 16  # cycles
-DARK = 0xFF
 STEPS = ("D2", "D3", "D4")
 
 
@@ -45,16 +43,6 @@ def raster(rates: list[float], hertz: float, pixels: int, spans: int) -> tuple[l
     return whole, due
 
 
-def changes(events: NDArray[np.void]) -> list[tuple[int, int]]:
-    """Return when the beam's duty changed [cycles], and to what."""
-    beam = events[(events["kind"] == PWM) & (events["unit"] == b"2") & (events["line"] == 0)]
-    seen: list[tuple[int, int]] = []
-    for cycle, value in zip(beam["cycle"].tolist(), (beam["value"] & 255).tolist(), strict=True):
-        if value and (not seen or seen[-1][1] != value):
-            seen.append((cycle, value))
-    return seen
-
-
 @pytest.mark.parametrize(
     ("rates", "hertz", "pixels"),
     [([8_000], 5_000, 30), ([100_000], 5_000, 30), ([40_000], 8_000, 30), ([10_000, 11_000], 5_000, 20)],
@@ -78,7 +66,7 @@ def test_pixels_come_at_their_ticks_while_motors_step(
         late.append(up - planned)
     origin = np.median(np.concatenate(late))
     assert np.concatenate(late).max() - origin <= 10 * US
-    seen = changes(events)
+    seen = motion.duties(events)
     assert [power for _, power in seen] == [power for _, power in due]
     astray = np.array([cycle for cycle, _ in seen]) - origin - np.array([tick for tick, _ in due])
     assert astray.min() >= -5 * US
@@ -103,5 +91,5 @@ def test_a_hold_is_dark_from_its_first_slice_on_and_pixels_do_not_light_it(talk:
     told.pass_on(0.05)
     events = told.events()
     assert motion.edges(events, "D2", 1).size  # it braked, and
-    assert not changes(events)  # in the dark
+    assert not motion.duties(events)  # in the dark
     assert CAUSES[int(told.ask()["cause"])] == "ordered"
