@@ -58,21 +58,22 @@ class Ran:
     def __init__(self, text: str, machine: Machine, program: Path, image: Path) -> None:
         self.motion = trochia.plan(trochia.gcode(text, machine), machine).trajectory
         self.rows = rows(self.motion, machine)
-        line = ChipTransport(program, image)
+        line: Any = ChipTransport(program, image)
         line.edges = []
         backend = LiveAvr(machine, line)
         backend.open(0.0)
         backend.order(Orders(enable=True, lit=True), 0.0)
-        make, self.spans = backend._maker.make, b""
+        maker: Any = vars(backend)["_maker"]
+        make, self.spans = maker.make, b""
 
         def kept(*arguments: Any) -> Any:
             span = make(*arguments)
             self.spans += b"" if span is None else span.payload
             return span
 
-        backend._maker.make = kept  # type: ignore[method-assign]
+        maker.make = kept
         backend.order(Orders(segments=self.rows), 0.0)
-        self.rate, now = 1.0, 0.0
+        self.rate, report = 1.0, backend.poll(0.005)
         for now in np.arange(0.01, 2.0 * self.motion.duration + 0.3, 0.01):
             report = backend.poll(float(now))
             assert not report.troubles
