@@ -13,6 +13,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from trochia.kernels import scurve
 from trochia.planner import PROFILES, path_of, plan
 from trochia.toolpath import build
 
@@ -111,6 +112,20 @@ def test_what_was_slower_than_stopping(seed, monkeypatch):
     monkeypatch.syspath_prepend(SOAK)
     soak = runpy.run_path(str(SOAK / "plans.py"))
     assert soak["case"](seed, soak["machines"](), [0.0] * 4) == []
+
+
+def test_no_join_of_the_passes_fails(monkeypatch):
+    """Of 3,538 the place where the pass back is joined lay outside what its stretch's ends say."""
+    monkeypatch.syspath_prepend(SOAK)
+    soak = runpy.run_path(str(SOAK / "plans.py"))
+    among, plans = soak["machines"](), []
+    once = scurve.Ramps._pass
+    monkeypatch.setattr(scurve.Ramps, "_pass", lambda ramps, *rests: (plans.append(0), once(ramps, *rests)))
+    for seed in (3_468, 3_538):
+        machine = among[seed % len(among)]
+        program = soak["program_of"](seed, machine)
+        plan(build(program, machine, continuity=2), machine, program=program, profile="s-curve")
+    assert len(plans) == 2
 
 
 def test_a_sample_of_the_campaign_of_plans():
