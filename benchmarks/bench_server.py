@@ -33,7 +33,7 @@ Server = tuple["subprocess.Popen[str]", str, str]
 def start(folder: Path) -> Server:
     trochia = Path(sys.executable).with_name("trochia")
     process = subprocess.Popen(
-        [trochia, "serve", "-m", "reference-mill", "--port", "0", "--users", folder / "users.json", "--journal",
+        [trochia, "serve", "-m", "reference-mill", "--tcp", "0", "--users", folder / "users.json", "--journal",
          folder / "journal"], stdout=subprocess.PIPE, text=True, env=os.environ | {"PYTHONUNBUFFERED": "1"},
     )  # fmt: skip
     assert process.stdout is not None

@@ -69,10 +69,10 @@ def plug(chip_program, board_image, request, tmp_path):
             file = board if baud == 115_200 else f"{board}-{baud}"
             mcu = importlib.import_module("trochia.backends.avr.wiring").BOARDS[board].mcu
             answer = pseudo.LiveChip(chip_program, board_image(file), mcu)
-            request.addfinalizer(answer.chip.close)
+            request.addfinalizer(answer.close)
         made = pseudo.PseudoBoard(tmp_path / name, answer, baud=baud)
         made.board = answer
-        request.addfinalizer(made.pull)
+        request.addfinalizer(made.end)
         return made
 
     return begin

@@ -17,9 +17,12 @@ from trochia.backends.live import Orders
 from trochia.backends.segments import Segments, sampled
 from trochia.errors import LinkError, LinkTimeout, RemoteProtocolError, VersionMismatch
 from trochia.kernels.link import ANSWER, CAUSES, SCHEMA, TYPES, FrameReader, frame
+from trochia.messages import Cause
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from numpy.typing import NDArray
 
     from trochia.machine.machine import Machine
 
@@ -112,9 +115,10 @@ def motion(machine: Machine, way: float) -> Segments:
 
 
 def feed(backend: LiveAvr, board: Any, machine: Machine) -> float:
-    """Start a motion of two seconds; returns how far X goes."""
-    backend.order(Orders(enable=True), clock(board))
-    backend.order(Orders(segments=motion(machine, 20.0)), clock(board))
+    """Start a motion of two seconds from where X is called 0; returns how far it goes."""
+    now = clock(board)
+    backend.order(Orders(enable=True), now)
+    backend.order(Orders(segments=motion(machine, 20.0), at=backend.poll(now).executed), now)
     return 20.0
 
 
@@ -149,34 +153,72 @@ def test_a_cable_pulled_in_motion_and_put_back(
     feed(backend, board, machine)
     poll(backend, board, lambda now: now.commanded[0] > 3.0)
     board.pull()
-    with pytest.raises(LinkError, match=r"is gone: .*") as caught:
-        poll(backend, board, lambda _now: False)
-    assert "Is the cable in?" in str(caught.value)
-    backend.close()
-    board.replug()  # the chip stood still meanwhile: for it the silence begins now
+    report = poll(backend, board, lambda now: bool(now.troubles))
+    (trouble,) = report.troubles
+    assert (trouble.cause, "is gone" in trouble.text) == (Cause.LINK, True)
+    assert report.still
+    assert not report.enabled
+    with pytest.raises(LinkError, match="is gone"):
+        backend.order(Orders(enable=True), clock(board))
     silent = board.board.at + 1.0
-    while board.board.at < silent:
+    while board.board.at < silent:  # it brakes for want of a host, and stands
         time.sleep(0.01)
-    steps = np.concatenate(board.board.runs)
-    steps = steps[(steps["kind"] == 1) & (steps["unit"] == b"D") & (steps["line"] == 2) & (steps["value"] == 1)]
-    again = connect(board)
-    position = int(again.status["position"][0])
-    assert (again.status["state"], CAUSES[int(again.status["cause"])]) == (3, "silence")
+    board.replug()
+    report = poll(backend, board, lambda now: not now.troubles)
+    assert (backend.status["state"], CAUSES[int(backend.status["cause"])]) == (3, "silence")
+    steps = edges(board)
+    position = int(backend.status["position"][0])
     assert position == len(steps)  # it has kept count
     assert 600 < position < 4000
     gaps = np.diff(steps["cycle"].astype(np.int64))
     assert gaps[-3:].min() > 1.5 * np.median(gaps)  # it braked
-    report = poll(again, board, lambda _now: True)
+    assert report.commanded[0] == pytest.approx(position / 200)  # and is believed
     assert report.still
-    assert report.commanded.tolist() == [position / 200, 0.0, 0.0]  # the plan goes on from where it stands
-    back = motion(machine, position / 200)
-    back.joints[:] *= -1.0
-    back.joints[:, 0, 0] += position / 200
-    again.order(Orders(enable=True), clock(board))
-    again.order(Orders(segments=back, at=report.executed), clock(board))
-    poll(again, board, lambda now: now.still and now.executed > report.executed + 0.2)
-    poll(again, board, lambda _now: again.status["state"] == 0)
-    assert again.status["position"].tolist() == [0] * 6
+    backend.order(Orders(enable=True, place={"X": 0.0}), clock(board))
+    feed(backend, board, machine)
+    report = poll(backend, board, lambda now: now.still and now.commanded[0] == pytest.approx(20.0))
+    assert not report.troubles
+    poll(backend, board, lambda _now: backend.status["state"] == 0)
+    assert backend.status["position"][0] == position + 4000
+
+
+def edges(board: Any) -> NDArray[np.void]:
+    """The steps of X so far."""
+    made = np.concatenate(board.board.runs)
+    return made[(made["kind"] == 1) & (made["unit"] == b"D") & (made["line"] == 2) & (made["value"] == 1)]
+
+
+def test_a_board_that_is_reset_in_motion(plug: Callable[..., Any], connect: Callable[..., LiveAvr], machine: Machine):
+    board = plug("uno-stepdir")
+    backend = connect(board)
+    feed(backend, board, machine)
+    poll(backend, board, lambda now: now.commanded[0] > 3.0)
+    board.board.reset()
+    report = poll(backend, board, lambda now: bool(now.troubles))
+    assert "nothing has been heard from the board for 0.5 s" in report.troubles[0].text
+    report = poll(backend, board, lambda now: not now.troubles)
+    assert (report.enabled, report.still) == (False, True)
+    assert report.commanded[0] > 3.0  # nobody knows better; the controller has every axis homed
+    assert int(backend.status["position"][0]) == 0
+    backend.order(Orders(enable=True, place={"X": 0.0}), clock(board))
+    feed(backend, board, machine)
+    poll(backend, board, lambda now: now.still and now.commanded[0] == pytest.approx(20.0))
+    poll(backend, board, lambda _now: backend.status["state"] == 0)
+    assert backend.status["position"][0] == 4000
+    assert not report.troubles
+
+
+def test_a_stranger_is_plugged_in_instead(plug: Callable[..., Any], connect: Callable[..., LiveAvr]):
+    board = plug("uno-stepdir")
+    backend = connect(board)
+    board.pull()
+    poll(backend, board, lambda now: bool(now.troubles))
+    other = plug("mega-stepdir")  # under the same name
+    stood = clock(board)
+    board.board = other.board
+    other.board.at += stood - 100.0
+    report = poll(backend, board, lambda now: any("the board is" in trouble.text for trouble in now.troubles))
+    assert "the board is mega-stepdir, not uno-stepdir" in report.troubles[0].text
 
 
 def test_the_next_program_on_a_board_that_was_not_reset(

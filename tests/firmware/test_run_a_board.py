@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import time
 from itertools import pairwise
-from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,7 +12,6 @@ import pytest
 from click.testing import CliRunner
 
 from trochia.cli import run as run_command
-from trochia.controller.runtime import Runtime
 from trochia.errors import RemoteProtocolError
 
 if TYPE_CHECKING:
@@ -28,12 +26,7 @@ def chips_time(monkeypatch: pytest.MonkeyPatch) -> Callable[[Any], None]:
     """The host's clock is the chip's, which stands still where the computer has no time for it."""
 
     def take(chip: Any) -> None:
-        def now() -> float:
-            return 100.0 + chip.at
-
-        start = Runtime.start
-        monkeypatch.setattr(Runtime, "start", lambda runtime: start(runtime, now))
-        monkeypatch.setattr(run_command, "time", SimpleNamespace(monotonic=now, sleep=time.sleep))
+        monkeypatch.setattr(run_command, "clock_of", lambda _backend: chip.clock)
 
     return take
 

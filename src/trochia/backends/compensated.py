@@ -60,6 +60,7 @@ class Compensated:
     def __init__(self, inner: SegmentBackend, crossing: Crossing) -> None:
         self.inner = inner
         self.kind = inner.kind
+        self.title = inner.title
         self.machine: Machine = inner.machine
         self.latency, self.ahead = inner.latency, inner.ahead
         joints = self.machine.joints

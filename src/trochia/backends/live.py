@@ -10,6 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, ClassVar, Protocol, runtime_checkable
 
+from trochia.errors import LocalProtocolError
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
@@ -56,7 +58,7 @@ class Orders:
     place
         What the joints' present positions are called from now on [mm or degree], by joint; only at rest.
     inputs
-        Levels of inputs that are no switches of an axis; only a twin takes them.
+        Levels of inputs that are no switches of an axis; only a twin or a simulated chip takes them.
     """
 
     segments: Segments | None = None
@@ -71,14 +73,31 @@ class Orders:
     inputs: Mapping[str, float] = field(default_factory=dict[str, float])
 
 
+def check_outputs(orders: Orders, known: Mapping[str, float]) -> None:
+    """Refuse orders for outputs that a backend does not have.
+
+    Raises
+    ------
+    LocalProtocolError
+        With the names of those that there are.
+    """
+    for name in (*orders.outputs, *(name for _, name, _ in orders.timed)):
+        if name not in known:
+            raise LocalProtocolError(f"there is no output {name!r}", hint=f"There are: {', '.join(known)}")
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Trouble:
-    """What the backend saw go wrong; ``value`` and ``limit`` in the joint's unit."""
+    """What the backend saw go wrong; ``value`` and ``limit`` in the joint's unit.
+
+    ``text`` says it, where that is more than what the cause says.
+    """
 
     cause: Cause
     joint: str = ""
     value: float | None = None
     limit: float | None = None
+    text: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -104,6 +123,8 @@ class Report:
         None: not yet.
     inputs
         Levels by name: True or False, or the value of an analogue one.
+    settable
+        Whether inputs can be set: where nothing real is wired to them.
     """
 
     time: float
@@ -121,6 +142,7 @@ class Report:
     outputs: Mapping[str, float]
     troubles: tuple[Trouble, ...] = ()
     caught: tuple[str, NDArray[np.float64]] | None = None
+    settable: bool = False
 
     @property
     def still(self) -> bool:
@@ -179,12 +201,15 @@ class SegmentBackend(Protocol):
         How long an order takes to act, at most [s]: what lies nearer than that in stream time cannot be replaced.
     ahead
         How much motion it wants to hold [s].
+    title
+        Who moves, for a person: ``twin``, or which board where.
     """
 
     kind: ClassVar[str]
     machine: Machine
     latency: float
     ahead: float
+    title: str
 
     def open(self, now: float) -> Report:
         """Connect, and report; nothing moves, drives are off."""

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from trochia.backends.executor import Executor
-from trochia.backends.live import BUILT_IN, Orders, Report, Ticks, Trouble
+from trochia.backends.live import BUILT_IN, Orders, Report, Ticks, Trouble, check_outputs
 from trochia.backends.plant import Plant
 from trochia.backends.switches import Indexes, crossing
 from trochia.errors import LocalProtocolError
@@ -62,6 +62,7 @@ class LiveTwin:
     """
 
     kind: ClassVar[str] = "twin"
+    title = "twin"
 
     def __init__(
         self,
@@ -126,6 +127,7 @@ class LiveTwin:
             actual=self.plant.real(self.plant.load[None, :])[0] + self._offset, enabled=self._enabled,
             beam=self._beam, line=self._line,
             inputs=self._read(), outputs=dict(self.outputs), troubles=troubles, caught=self._caught,
+            settable=True,
         )  # fmt: skip
 
     def order(self, orders: Orders, now: float) -> None:  # noqa: ARG002 - the clock is told by poll
@@ -151,9 +153,7 @@ class LiveTwin:
             self._executor.add(orders.segments, orders.at)
 
     def _set_outputs(self, orders: Orders) -> None:
-        for name in (*orders.outputs, *(name for _, name, _ in orders.timed)):
-            if name not in self.outputs:
-                raise LocalProtocolError(f"there is no output {name!r}", hint=f"There are: {', '.join(self.outputs)}")
+        check_outputs(orders, self.outputs)
         self.outputs |= orders.outputs
         if orders.segments is not None:
             self._timed = [entry for entry in self._timed if entry[0] < orders.at]

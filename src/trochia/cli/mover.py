@@ -1,10 +1,11 @@
-"""Who moves the machine: its twin, or a board with Trochia's image.
+"""Who moves the machine: its twin, or a board with Trochia's image, real or simulated.
 
-In: what the command line says.  Out: a live backend, not yet opened.
+In: what the command line says.  Out: a live backend, not yet opened, and the clock it goes by.
 """
 
 from __future__ import annotations
 
+import time
 from typing import TYPE_CHECKING
 
 import click
@@ -15,50 +16,80 @@ if TYPE_CHECKING:
     from trochia.backends.live import SegmentBackend
     from trochia.machine.machine import Machine
 
+PORTED = ("avr", "grbl")  #: backends that are on a serial port
+OURS = ("avr", "simavr")  #: boards with Trochia's image
 
-def mover_options(command: Callable[..., None]) -> Callable[..., None]:
-    """Add the options that say who moves; the command gets them as ``backend``, ``port``, ``baud``, ``board``."""
-    for decorate in (
+
+def mover_options(*kinds: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Return what adds the options that say who moves: the command gets ``backend``, ``port``, ``baud``, ``board``."""
+    boards = " or ".join(kind for kind in kinds if kind in PORTED)
+    told = {"twin": "the twin", "avr": "a board with Trochia's image", "grbl": "one with GRBL",
+            "simavr": "that image on a simulated chip"}  # fmt: skip
+    options = (
         click.option("--board", metavar="BOARD", default="uno-stepdir", show_default=True,
-                     help="Which board it is (--backend avr)."),
+                     help="Which board it is (--backend avr or simavr)."),
         click.option("--baud", type=click.IntRange(min=1200), default=115200, show_default=True, help="Its baud rate."),
-        click.option("--port", metavar="DEVICE", help="Serial port of a board (--backend avr or grbl)."),
-        click.option("--backend", type=click.Choice(["twin", "avr", "grbl"]), default="twin", show_default=True,
-                     help="Who moves: the twin, a board with Trochia's image, one with GRBL."),
-    ):  # fmt: skip
-        command = decorate(command)
-    return command
+        click.option("--port", metavar="DEVICE", help=f"Serial port of a board (--backend {boards})."),
+        click.option("--backend", type=click.Choice(kinds), default="twin", show_default=True,
+                     help=f"Who moves: {', '.join(told[kind] for kind in kinds)}."),
+    )  # fmt: skip
+
+    def decorate(command: Callable[..., None]) -> Callable[..., None]:
+        for option in options:
+            command = option(command)
+        return command
+
+    return decorate
 
 
-def check(backend: str, port: str | None, *, virtual: bool, kept: bool) -> None:
+def check(backend: str, port: str | None, *, virtual: bool = False, kept: bool = False) -> None:
     """Refuse options that do not go together; ``kept``: a journal or a recording is asked for."""
-    if (backend != "twin") != (port is not None):
+    if (backend in PORTED) != (port is not None):
         raise click.UsageError("--backend avr or grbl and --port DEVICE go together")
     if backend == "grbl" and kept:
         raise click.UsageError("a GRBL board has no journal: leave --journal and --record out")
-    if virtual and backend != "twin":
+    if virtual and backend in PORTED:
         raise click.UsageError("a board has its own clock: leave --virtual out")
 
 
-def mover(machine: Machine, backend: str, *, port: str | None, baud: int, board: str, virtual: bool) -> SegmentBackend:
-    """Return the twin, or the board on a port.
+def mover(
+    machine: Machine, backend: str, *, port: str | None, baud: int, board: str, virtual: bool = False
+) -> SegmentBackend:
+    """Return the twin, or the board on a port or a simulated chip.
 
     Raises
     ------
     LinkError
         When the port cannot be opened.
     ConfigError
-        When the machine is not one for this board.
+        When the machine is not one for this board, or a chip cannot be simulated here.
     """
-    if backend == "avr" and port is not None:
+    from trochia.backends.switches import switches_of  # noqa: PLC0415 - `trochia --help` must stay light
+
+    if backend in OURS:
         from trochia.backends.avr.live_avr import LiveAvr  # noqa: PLC0415 - only where there is one
-        from trochia.backends.avr.transports import SerialTransport  # noqa: PLC0415
         from trochia.backends.avr.wiring import BOARDS  # noqa: PLC0415
 
         if board not in BOARDS:
             raise click.UsageError(f"no board is called {board!r}; there are {', '.join(BOARDS)}")
+        if port is None:
+            from trochia.backends.avr.simulator import simulated  # noqa: PLC0415
+
+            made = LiveAvr(machine, simulated(board, baud=baud), board=board)
+            made.inputs.follow(switches_of(machine))
+            return made
+        from trochia.backends.avr.transports import SerialTransport  # noqa: PLC0415
+
         return LiveAvr(machine, SerialTransport(port, baud=baud), board=board)
     from trochia.backends.live_twin import DEEP, SHALLOW, LiveTwin  # noqa: PLC0415
-    from trochia.backends.switches import switches_of  # noqa: PLC0415
 
     return LiveTwin(machine, switches=switches_of(machine), ahead=SHALLOW if virtual else DEEP)
+
+
+def clock_of(backend: str) -> Callable[[], float]:
+    """Return the clock that a backend of this kind goes by, in real time [s]."""
+    if backend == "simavr":
+        from trochia.backends.avr.simulator import UnhurriedClock  # noqa: PLC0415
+
+        return UnhurriedClock()
+    return time.monotonic

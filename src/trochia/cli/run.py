@@ -10,10 +10,12 @@ from typing import TYPE_CHECKING
 import click
 
 from trochia.cli import options
-from trochia.cli.mover import check, mover, mover_options
+from trochia.cli.mover import check, clock_of, mover, mover_options
 from trochia.cli.record_options import recording_options, tell_recorded
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from trochia.cli.run_figures import Figures
     from trochia.cli.run_words import Words
     from trochia.controller.recording import Take
@@ -27,7 +29,7 @@ LOOK = 0.1  #: between looks at the status [s]
 
 @click.command()
 @options.common
-@mover_options
+@mover_options("twin", "avr", "simavr", "grbl")
 @click.option("--virtual", is_flag=True, help="Run by a virtual clock, as fast as the computer can.")
 @click.option("-y", "--yes", is_flag=True, help="Home, start and go on at stops without asking.")
 @recording_options
@@ -68,15 +70,15 @@ def command(
 
     logs_of(job.verdict.plan.program.actions, place_of(program))  # told before anything moves, if it cannot be
     moves = mover(job.machine, backend, port=port, baud=baud, board=board, virtual=virtual)
-    clock = 0.0 if virtual else time.monotonic()
+    clock = (lambda: 0.0) if virtual else clock_of(backend)
     runtime = Runtime(moves, journal=journal, work=reading.work.placed(**place), reading=reading,
-                      now=clock)  # fmt: skip
+                      now=clock())  # fmt: skip
     end_codes = attach(runtime, job.machine, machine_name, blocking=virtual)
     if take is not None:
         runtime.recorder.start(take, program=job.name)
     figures = None if virtual else Figures(runtime)
     words = Words(runtime)
-    session = _Session(runtime, words, virtual=virtual, now=clock, quiet=as_json, figures=figures)
+    session = _Session(runtime, words, virtual=virtual, clock=clock, quiet=as_json, figures=figures)
     try:
         session.go(job.name, job.text.decode("latin-1"), yes=yes)
     finally:
@@ -111,14 +113,15 @@ class _Session:
     """A person at the machine: commands, questions, the line under way."""
 
     def __init__(
-        self, runtime: Runtime, words: Words, *, virtual: bool, now: float, quiet: bool, figures: Figures | None = None
-    ) -> None:
-        self._words = words
-        self._runtime, self._virtual, self._now, self._quiet = runtime, virtual, now, quiet
+        self, runtime: Runtime, words: Words, *, virtual: bool, clock: Callable[[], float], quiet: bool,
+        figures: Figures | None = None,
+    ) -> None:  # fmt: skip
+        self._words, self._now = words, 0.0
+        self._runtime, self._virtual, self._quiet = runtime, virtual, quiet
         self._figures = figures
         self.took = 0.0
         if not virtual:
-            runtime.start()
+            runtime.start(clock)
 
     @property
     def status(self) -> Status:
@@ -156,7 +159,7 @@ class _Session:
             click.echo(f"{self.status.state} after {self.took:.1f} s{alarms}")
 
     def _time(self) -> float:
-        return self._now if self._virtual else time.monotonic()
+        return self._now if self._virtual else self.status.time
 
     def _send(self, command: AnyCommand) -> None:
         """Have a command taken, or end with the reason."""

@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING
 import click
 
 from trochia.cli import options
+from trochia.cli.mover import check, clock_of, mover, mover_options
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from trochia.backends.live import SegmentBackend
     from trochia.controller.runtime import Runtime
-    from trochia.machine.machine import Machine
     from trochia.server.desk import Desk
     from trochia.server.doors import Doors
     from trochia.server.listen import Served
@@ -38,8 +39,9 @@ def users_option(command: Callable[..., None]) -> Callable[..., None]:
 
 @click.command()
 @options.machine
-@click.option("--backend", type=click.Choice(["twin"]), default="twin", show_default=True, help="Who moves.")
-@click.option("--port", type=click.IntRange(0, 65535), default=8765, show_default=True, help="0: any that is free.")
+@mover_options("twin", "avr", "simavr")
+@click.option("--tcp", type=click.IntRange(0, 65535), default=8765, show_default=True, metavar="PORT",
+              help="Port of the page and the interface; 0: any that is free.")  # fmt: skip
 @click.option("--host", default="127.0.0.1", show_default=True, metavar="ADDRESS",
               help="Where to listen; beyond this computer only together with --allow.")  # fmt: skip
 @click.option("--allow", multiple=True, metavar="NAME",
@@ -53,16 +55,22 @@ def users_option(command: Callable[..., None]) -> Callable[..., None]:
 @click.option("--recordings", type=click.Path(file_okay=False, path_type=Path), metavar="DIR",
               help="Folder of the recordings that clients start; without it they cannot.")  # fmt: skip
 def command(
-    *, machine_name: str, backend: str, port: int, host: str, allow: tuple[str, ...], certificate: Path | None,
-    key: Path | None, users_file: Path | None, journal: Path | None, recordings: Path | None,
+    *, machine_name: str, backend: str, port: str | None, baud: int, board: str, tcp: int, host: str,
+    allow: tuple[str, ...], certificate: Path | None, key: Path | None, users_file: Path | None,
+    journal: Path | None, recordings: Path | None,
 ) -> None:  # fmt: skip
     """Serve a machine: a page with its state and STOP, an HTTP and WebSocket interface, a Python client.
 
     The first start makes a user `operator` and shows the password once; `trochia users` makes more.
-    Ctrl-C brakes what moves and switches the drives off.
+    Ctrl-C brakes what moves and switches the drives off.  Nothing moves when a board is connected to.
 
     Example: trochia serve -m xy-table --journal journal
+
+    Example: trochia serve -m mill.toml --backend avr --port /dev/ttyACM0
     """
+    if port is not None and port.isdecimal():
+        raise click.UsageError(f"--port names a board's serial port; the page's is --tcp {port}")
+    check(backend, port)
     if host not in LOOPBACK and not allow:
         raise click.UsageError(f"--host {host} opens the machine to the network: name by --allow what browsers may "
                                "call it, like --allow mill.local")  # fmt: skip
@@ -74,36 +82,37 @@ def command(
     from trochia.server.listen import Served, listen  # noqa: PLC0415
     from trochia.server.users import Users  # noqa: PLC0415
 
-    del backend  # there is one so far
     users = Users(users_file or settings_folder() / "users.json")
     machine = load(machine_name)
+    moves = mover(machine, backend, port=port, baud=baud, board=board)
     password = users.first()
     if password is not None:
         click.echo(f"user operator, password {password}\nshown this once; kept in {users.path} as a key only")
-    socket = listen(host, port)
+    socket = listen(host, tcp)
     doors = Doors.of(int(socket.getsockname()[1]), allow, secure=certificate is not None)
-    runtime = _runtime(machine, machine_name, journal, recordings)
+    clock = clock_of(backend)
+    runtime, end_codes = _runtime(moves, machine_name, journal, recordings, now=clock())
     desk = Desk(runtime, users, doors, log=None if journal is None else journal / "access")
     tls = (certificate, key) if certificate is not None and key is not None else None
-    _serve(runtime, desk, Served(desk, socket, tls), _address(doors, host))
+    try:
+        _serve(runtime, desk, Served(desk, socket, tls), _address(doors, host), clock)
+    finally:
+        end_codes()
 
 
-def _runtime(machine: Machine, name: str, journal: Path | None, recordings: Path | None) -> Runtime:
-    import time  # noqa: PLC0415
-
-    from trochia.backends.live_twin import DEEP, LiveTwin  # noqa: PLC0415 - only what moves needs a backend
-    from trochia.backends.switches import switches_of  # noqa: PLC0415
-    from trochia.cli.setup import of_machine  # noqa: PLC0415
+def _runtime(
+    moves: SegmentBackend, name: str, journal: Path | None, recordings: Path | None, *, now: float
+) -> tuple[Runtime, Callable[[], None]]:
+    """Return what runs the machine, and what ends the programs of its codes."""
+    from trochia.cli.setup import of_machine  # noqa: PLC0415 - `trochia --help` must stay light
     from trochia.cli.user_codes import attach  # noqa: PLC0415
     from trochia.controller.offsets import NAME  # noqa: PLC0415
     from trochia.controller.runtime import Runtime  # noqa: PLC0415
 
-    twin = LiveTwin(machine, switches=switches_of(machine), ahead=DEEP)
     reading = of_machine(name)
-    runtime = Runtime(twin, journal=journal, recordings=recordings, work=reading.work, reading=reading,
-                      keep=None if journal is None else journal / NAME, now=time.monotonic())  # fmt: skip
-    attach(runtime, machine, name)
-    return runtime
+    runtime = Runtime(moves, journal=journal, recordings=recordings, work=reading.work, reading=reading,
+                      keep=None if journal is None else journal / NAME, now=now)  # fmt: skip
+    return runtime, attach(runtime, moves.machine, name)
 
 
 def _address(doors: Doors, host: str) -> str:
@@ -116,7 +125,7 @@ def _address(doors: Doors, host: str) -> str:
     return [*near, *named, *sorted(doors.origins)][0]
 
 
-def _serve(runtime: Runtime, desk: Desk, served: Served, address: str) -> None:
+def _serve(runtime: Runtime, desk: Desk, served: Served, address: str, clock: Callable[[], float]) -> None:
     """Serve until told to stop, then bring the machine to rest."""
     from trochia.server.rest import bring_to_rest  # noqa: PLC0415
 
@@ -125,8 +134,8 @@ def _serve(runtime: Runtime, desk: Desk, served: Served, address: str) -> None:
 
     signal.signal(signal.SIGTERM, terminated)
     sys.setswitchinterval(0.001)  # else whoever computes keeps the controller waiting for 5 ms, a whole turn
-    runtime.start()
-    click.echo(f"{runtime.backend.machine.name} at {address} (Ctrl-C ends)")
+    runtime.start(clock)
+    click.echo(f"{runtime.backend.machine.name} ({runtime.backend.title}) at {address} (Ctrl-C ends)")
     try:
         served.run()
     except KeyboardInterrupt:

@@ -48,7 +48,8 @@ TROUBLES: dict[Cause, Row] = {
     ),
     Cause.LINK: Row(
         "the link to the backend failed: {text}",
-        "Look at the cable and the supply, then connect again; the machine stopped from what it held.", trusted=False,
+        "Look at the cable and the supply; a board that is back is connected to by itself.  What it held was braked: "
+        "then acknowledge, switch the drives on, and home.", trusted=False,
     ),
     Cause.UNDERRUN: Row(
         "motion ran out while moving, and was stopped along its path",
@@ -98,10 +99,12 @@ class Alarms:
         if any(fault.cause is trouble.cause and fault.axis == trouble.joint for fault in self.latched):
             return None
         row = TROUBLES[trouble.cause]
+        text = text or trouble.text
+        sentence = "{text}" if trouble.text and "{text}" not in row.sentence else row.sentence
         fault = Fault(
             cause=trouble.cause, time=time, axis=trouble.joint, value=trouble.value, limit=trouble.limit, unit=unit,
             line=line, warning=row.warning, remedy=row.remedy,
-            message=row.sentence.format(axis=trouble.joint or "an axis", value=trouble.value or 0.0,
+            message=sentence.format(axis=trouble.joint or "an axis", value=trouble.value or 0.0,
                                         limit=trouble.limit or 0.0, unit=unit, text=text, line=line),
         )  # fmt: skip
         self.latched.append(fault)

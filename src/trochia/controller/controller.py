@@ -48,8 +48,8 @@ class Controller:
     ----------
     report
         The backend's first.
-    latency, ahead
-        Of the backend [s].
+    latency, ahead, title
+        Of the backend: how long its orders take, the motion it wants to hold [s], its name.
     reading
         How programs are read.
 
@@ -65,10 +65,10 @@ class Controller:
 
     def __init__(
         self, machine: Machine, report: Report, *, latency: float, ahead: float, work: WorkState | None = None,
-        reading: Reading | None = None,
+        reading: Reading | None = None, title: str = "",
     ) -> None:  # fmt: skip
         self.machine, self.report = machine, report
-        self.latency, self.ahead = latency, ahead
+        self.latency, self.ahead, self.title = latency, ahead, title
         self.state = State.OFF
         self.work = work or WorkState()
         self.switches, self.overrides = SwitchStatus(), OverrideStatus()
@@ -157,7 +157,7 @@ class Controller:
             axes=axis_statuses(self.machine, report, self.work, self.trusted), legal=legal(self.state),
             overrides=self.overrides, switches=self.switches, program=self._program(), request=self.request,
             alarms=tuple(self.alarms.latched), speed=float(np.linalg.norm(self.velocity)), rate=report.rate,
-            beam=report.beam, armed=self.lightable, spindle=report.outputs.get("spindle", 0.0),
+            backend=self.title, beam=report.beam, armed=self.lightable, spindle=report.outputs.get("spindle", 0.0),
             flood=bool(report.outputs.get("flood")), mist=bool(report.outputs.get("mist")), tool=self.work.tool,
             system=self.work.active, io=io_of(report), queued_s=report.queued, message=self._message(),
         )  # fmt: skip

@@ -265,12 +265,13 @@ def set_output(it: Controller, command: c.SetOutput, _now: float) -> str:
 
 def set_input(it: Controller, command: c.SetInput, _now: float) -> str:
     """Set an input of a twin."""
-    if it.report.actual is None:
+    if not it.report.settable:
         raise LocalProtocolError("inputs of a real machine cannot be set", hint="Only a digital twin's can.")
     switches = switches_of(it.machine)
     known = [
-        channel.name for channel in it.machine.io if channel.kind.endswith("input") and channel.name not in switches
-    ]
+        channel.name for channel in it.machine.io
+        if channel.kind.endswith("input") and channel.name not in switches and channel.name in it.report.inputs
+    ]  # fmt: skip
     if command.name in switches:
         raise LocalProtocolError(f"{command.name} is told by where the machine is", hint="Move the axis.")
     if command.name not in known:

@@ -90,7 +90,7 @@ class Runtime:
         self.backend = backend = compensated(backend)
         self.controller = Controller(backend.machine, backend.open(now), latency=backend.latency,
                                      ahead=backend.ahead, work=kept_work(keep, work) if keep else work,
-                                     reading=reading)  # fmt: skip
+                                     reading=reading, title=backend.title)  # fmt: skip
         self._keeper = Keeper(keep, self.controller.work) if keep else None
         self.load = Load()
         self.recorder = Recorder(backend, turn=PERIOD)

@@ -101,6 +101,8 @@ class Status(msgspec.Struct, frozen=True, kw_only=True):
         Signed speed asked for [rpm].
     queued_s
         Motion the backend still holds [s].
+    backend
+        Who moves: ``twin``, or which board where.
     message
         What the program under way, or the last one, has said last; or which is being planned.
     """

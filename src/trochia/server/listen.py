@@ -34,7 +34,7 @@ def listen(host: str, port: int) -> socket.socket:
         return socket.create_server((host, port), family=family, backlog=64)
     except OSError as error:
         raise ConfigError(f"cannot listen at {host}, port {port}: {error.strerror}",
-                          hint="Stop whoever uses the port, or choose another with --port.") from error  # fmt: skip
+                          hint="Stop whoever uses the port, or choose another with --tcp.") from error  # fmt: skip
 
 
 @dataclass(slots=True)

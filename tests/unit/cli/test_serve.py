@@ -27,7 +27,7 @@ def _run(*arguments: str, **more) -> subprocess.CompletedProcess[str]:
 def served(tmp_path):
     """Start a server in a process of its own; give it, its address and the password it showed."""
     process = subprocess.Popen(
-        [TROCHIA, "serve", "-m", "reference-mill", "--port", "0", "--users", tmp_path / "users.json", "--journal",
+        [TROCHIA, "serve", "-m", "reference-mill", "--tcp", "0", "--users", tmp_path / "users.json", "--journal",
          tmp_path / "journal"], stdout=subprocess.PIPE, text=True, env=os.environ | {"PYTHONUNBUFFERED": "1"},
     )  # fmt: skip
     assert process.stdout is not None
@@ -71,7 +71,7 @@ def test_beyond_this_computer_only_under_names(tmp_path) -> None:
 
 def test_a_port_that_is_taken_is_said(tmp_path, served) -> None:
     _, address, _ = served
-    done = _run("serve", "-m", "reference-mill", "--port", address.rpartition(":")[2], "--users", str(tmp_path / "u"))
+    done = _run("serve", "-m", "reference-mill", "--tcp", address.rpartition(":")[2], "--users", str(tmp_path / "u"))
     assert done.returncode == 2
     assert "cannot listen" in done.stderr
 
@@ -103,7 +103,7 @@ def test_offsets_are_there_again_after_a_kill(served, tmp_path) -> None:
     process.wait()
     kept = kept_work(tmp_path / "journal" / "parameters.var")
     assert kept.systems[0][0] == 12.5
-    command = [TROCHIA, "serve", "-m", "reference-mill", "--port", "0", "--users", tmp_path / "users.json", "--journal",
+    command = [TROCHIA, "serve", "-m", "reference-mill", "--tcp", "0", "--users", tmp_path / "users.json", "--journal",
                tmp_path / "journal"]  # fmt: skip
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as again:
         assert again.stdout is not None

@@ -7,23 +7,20 @@ the plan's at that stream time; at rest the steps are held against it.
 
 from __future__ import annotations
 
-import time
-from contextlib import suppress
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from trochia.backends.avr.clock import ChipClock
+from trochia.backends.avr.connection import Connection
 from trochia.backends.avr.inputs import Inputs
-from trochia.backends.avr.session import Greeted, Session, Told
 from trochia.backends.avr.spans import SpanMaker, shortened, steps_made
-from trochia.backends.avr.transports import Transport, first_number, unanswered
 from trochia.backends.avr.troubles import TROUBLES
 from trochia.backends.avr.wiring import BOARDS, steps_per_unit, wire
-from trochia.backends.live import BUILT_IN, Orders, Report, Trouble
+from trochia.backends.live import BUILT_IN, Orders, Report, Trouble, check_outputs
 from trochia.backends.queue import Queue
-from trochia.errors import LimitError, LinkError, LocalProtocolError, RemoteProtocolError
-from trochia.kernels.link import BEGIN, CAUSES, CUT, FULL_RATE, RUNNING, STATES
+from trochia.errors import LimitError, LinkError, LocalProtocolError
+from trochia.kernels.link import BEGIN, CAUSES, CUT, FULL_RATE, STATES
 from trochia.messages import Cause
 
 if TYPE_CHECKING:
@@ -31,11 +28,12 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from trochia.backends.avr.session import Told
     from trochia.backends.avr.spans import Span
+    from trochia.backends.avr.transports import Transport
     from trochia.backends.live import Watch
     from trochia.machine.machine import Machine
 
-CONNECT = 3.0  #: a board may take that long to answer after its reset [s]
 ASKED = 0.0035  #: before the end of a poll a status is asked for [s]
 QUIET = 0.003  #: before that nothing is sent, so that the question comes at its time [s]
 KEPT = 0.2  #: how long rows that were run through are kept [s]
@@ -62,24 +60,23 @@ class LiveAvr:
 
     def __init__(self, machine: Machine, transport: Transport, *, board: str = "uno-stepdir") -> None:
         self.machine, self.board = machine, BOARDS[board]
-        self.latency, self.ahead, self.lag = 0.02, 0.4, 0.01  # lag: a chip at its limit answers late
+        self.ahead, self.lag = 0.4, 0.01  # lag: a chip at its limit answers late
         self._scale = steps_per_unit(machine, self.board.motors)
         self.wiring = wire(machine, self.board)
         self._full = machine.beam.full_power if machine.beam else 1.0
         self._names = [joint.name for joint in machine.joints]
         self.outputs = dict.fromkeys((*BUILT_IN, *self.wiring.outputs), 0.0)
-        self.transport = transport
-        self.session = Session(transport.baud, seed=first_number(transport))
+        self.link = Connection(transport, self.board)
+        self.transport, self.session, self.latency = transport, self.link.session, self.link.latency
+        self.title = f"{board} {transport.place}"
         self.clock = ChipClock(16_000_000)
-        self.answer: Any = None
-        self.status: Any = None
         self.inputs = Inputs(self)
         self._queue = Queue(np.zeros(len(self._names)))
         self._maker = SpanMaker(self._scale, 16_000_000, self._level, self.board.closest)
         self._spans: list[Span] = []
-        self._now = self._asked = 0.0
         self._executed = self._rate = self._stamp = 0.0
         self._epoch, self._state = 0, "idle"  # idle, loading, running
+        self._gone, self._seen_epoch = False, 0  # whether it was lost and is not back; of the board's last status
         self._enabled = self._stopping = False
         self._begun = self._looked = -1
         self._timed: list[tuple[float, str, float]] = []
@@ -94,58 +91,51 @@ class LiveAvr:
         ------
         LinkTimeout
             When nothing answers.
-        VersionMismatch
-            When the image belongs to another program.
-        RemoteProtocolError
-            When it is an image for another board.
+        VersionMismatch, RemoteProtocolError
+            When the image belongs to another program, or to another board.
         """
-        self._now = now
         for name, (_, active) in self.wiring.inputs.items():
             self.inputs.put(name, level=1 - active)
-        self.session.greet(now)
-        while self.answer is None:
-            self._breathe()
-            if self._now - now > CONNECT:
-                raise unanswered(self.transport, self.session.strange)
-        while (self.status is None or self.status["state"] == RUNNING) and self._now - now < CONNECT:
-            self.session.ask()  # a board that was not reset brakes first
-            self._asked = self._now
-            self._breathe()
-        if self.status is not None:
-            self._queue.clear(self._positions() / self._scale, self._executed)
-        self._now = now
-        self.transport.rebase(now)
-        self.clock = ChipClock(int(self.answer["clock"]))
+        self.link.open(now, estop=self.wiring.stops(self.machine.panel))
+        self._maker.count = self._met()
+        self._queue.clear(self._maker.count / self._scale, self._executed)
+        self._seen_epoch = int(self.status["epoch"])
         return self._report(now)
+
+    @property
+    def status(self) -> Any:  # noqa: ANN401 - a numpy record has no type of its own
+        """What the board said of itself last."""
+        return self.link.status
 
     def close(self) -> None:
         """Stop, drives off, disconnect."""
-        self.session.halt(drives_off=True)
-        with suppress(LinkError):  # nobody is there any more
-            self._exchange(self._now + 0.005)
-        self.transport.close()
+        self.link.close()
 
     def poll(self, now: float) -> Report:
         """Let time go on to ``now``, and report; see :class:`trochia.backends.live.SegmentBackend`."""
-        stride = self.transport.stride
-        ask_at = max(now - ASKED, self._now)
+        link, stride = self.link, self.transport.stride
+        ask_at = max(now - ASKED, link.now)
         asked = False
-        quiet = ask_at - QUIET if stride and ask_at - self._now > 2 * QUIET else now + 1.0
+        quiet = ask_at - QUIET if stride and ask_at - link.now > 2 * QUIET else now + 1.0
         while True:
-            if self._now < quiet:
+            if link.now < quiet and not link.lost:
                 self._send()
-            if not asked and self._now >= ask_at - 1e-9:
-                asked, self._asked = True, self._now
-                self.session.ask()
-            to = min(self._now + stride, now if asked else ask_at) if stride else now
-            self._exchange(max(to, self._now))
-            if self._now >= now - 1e-9 and asked:
+            if not asked and link.now >= ask_at - 1e-9:
+                asked = True
+                link.ask()
+            to = min(link.now + stride, now if asked else ask_at) if stride else now
+            self._exchange(max(to, link.now))
+            if link.now >= now - 1e-9 and asked:
                 break
         return self._report(now)
 
-    def order(self, orders: Orders, now: float) -> None:  # noqa: ARG002 - the clock is told by poll
+    def order(self, orders: Orders, now: float) -> None:
         """Take orders; see :class:`trochia.backends.live.SegmentBackend`."""
-        self._check(orders)
+        check_outputs(orders, self.outputs)
+        if self.link.lost:
+            if orders.enable or orders.segments is not None:
+                raise LinkError(self.link.lost, hint="Is the cable in?")
+            return  # it stands still, or does soon, and its drives are switched off when it is back
         if orders.stop or orders.enable is False:
             self._halt(drives_off=orders.enable is False)
         self._switch(orders)
@@ -153,6 +143,7 @@ class LiveAvr:
             self._look(orders.watch)
         if orders.place:
             self._place(orders.place)
+        self.inputs.set(orders.inputs)
         stale = self._caught is not None and orders.watch is None
         if orders.segments is not None and not stale:
             if not self._enabled:
@@ -163,11 +154,9 @@ class LiveAvr:
         for at, _, _ in orders.timed:
             self._cut(at)
         self._timed = sorted([*self._timed, *orders.timed])
-
-    def _check(self, orders: Orders) -> None:
-        for name in (*orders.outputs, *(name for _, name, _ in orders.timed)):
-            if name not in self.outputs:
-                raise LocalProtocolError(f"there is no output {name!r}", hint=f"There are: {', '.join(self.outputs)}")
+        if not self.transport.stride:
+            self._send()
+            self._exchange(now)  # a turn later the chip may have run through what is to be replaced
 
     def _level(self, power: float) -> int:
         return round(255 * min(max(power / self._full, 0.0), 1.0))
@@ -243,9 +232,9 @@ class LiveAvr:
                 break
             try:
                 span = self._maker.make(self._queue, boundaries, self._outputs_at)
-            except LimitError:
+            except LimitError as error:
                 self._halt(drives_off=False)
-                self._troubles.append(Trouble(cause=Cause.OVER_SPEED))
+                self._troubles.append(Trouble(cause=Cause.OVER_SPEED, text=error.message))
                 return
             if span is None:
                 break
@@ -277,35 +266,44 @@ class LiveAvr:
         due = {name: value for at, name, value in self._timed if self._maker.tick(at) <= tick}
         return self.wiring.levels(self.outputs | due)
 
-    def _breathe(self) -> None:
-        """Let two thousandths of a second pass."""
-        self._exchange(self._now + 0.002)
-        if not self.transport.stride:
-            time.sleep(0.002)
-
     def _exchange(self, now: float) -> None:
         """Let bytes pass until ``now``."""
-        came = self.transport.exchange(self.session.outgoing(self._now), now)
-        self._now = now
-        for event in self.session.receive(came, now):
-            if isinstance(event, Greeted):
-                self._greeted(event.answer)
-            elif isinstance(event, Told):
-                self._told(event)
-            else:
-                self._troubles.append(Trouble(cause=Cause.LINK, value=event.silence))
+        for told in self.link.exchange(now):
+            self._gone = self._gone and not self._back()
+            self._told(told)
+        if self.link.lost and not self._gone:
+            self._lose()
 
-    def _greeted(self, answer: Any) -> None:  # noqa: ANN401 - a numpy record has no type of its own
-        name = bytes(answer["board"]).rstrip(b"\0").decode("ascii", "replace")
-        if name != self.board.name:
-            raise RemoteProtocolError(f"the board is {name}, not {self.board.name}", hint=f"Say --board {name}.")
-        self.answer, self._maker.payload = answer, int(answer["payload"])
+    def _met(self) -> NDArray[np.int64]:
+        """Go by what the board's answer says of it, and return where its motors stand (motors,) [steps]."""
+        answer = self.link.answer
+        self.clock, self._maker.payload = ChipClock(int(answer["clock"])), int(answer["payload"])
+        return self._positions()
+
+    def _lose(self) -> None:
+        """Note that nobody hears the board: it brakes by itself, and what it was to do is forgotten."""
+        self._gone, self._rate, self._enabled, self._stopping = True, 0.0, False, False
+        self._watch, self._caught, self._looked = (), None, -1
+        self._rest_at(self._executed)
+
+    def _back(self) -> bool:
+        """Take up with a board that is back: it knows where it stands, unless it was reset, and moves for nobody."""
+        self._enabled = bool(self.status["enabled"])
+        self.outputs = dict.fromkeys(self.outputs, 0.0)
+        self._switch(Orders(lit=False, outputs=self.outputs))
+        count = self._met()
+        if self._seen_epoch and not int(self.status["epoch"]):  # it was reset: it counts from 0 again
+            self._maker.offset = self._commanded() - count / self._scale
+        self._maker.count = count
+        self._queue.clear(count / self._scale + self._maker.offset, self._executed)
+        return True
 
     def _told(self, told: Told) -> None:
         status = told.status
-        self.status = status
-        at = self.clock.sample(self._asked, told.time, int(status["clock"]))
+        self._seen_epoch = int(status["epoch"])
+        at = self.clock.sample(self.link.asked, told.time, int(status["clock"]))
         state = STATES.get(int(status["state"]), "stopped")
+        self.inputs.look(self._positions() / self._scale)
         if self._state == "idle":
             if not self._spans:
                 self._maker.count = self._positions()
@@ -346,7 +344,7 @@ class LiveAvr:
         self.session.forget()
         self._stopping = False
         if cause in TROUBLES:
-            self._troubles.append(Trouble(cause=TROUBLES[cause]))
+            self._troubles.append(TROUBLES[cause])
         if cause == "estop":
             self._enabled = False
         self._compare((self._commanded() - self._maker.offset) * self._scale)
@@ -389,6 +387,8 @@ class LiveAvr:
         self._queue.forget(self._executed - KEPT if moving else self._executed)
         self._spans = [span for span in self._spans if self._maker.time(span.end) > self._executed - KEPT]
         troubles, self._troubles = tuple(self._troubles), []
+        if self.link.lost:
+            troubles += (Trouble(cause=Cause.LINK, text=self.link.lost),)
         status = self.status
         return Report(
             time=now, executed=self._executed, rate=rate, queued=self._queue.end - self._executed if moving else 0.0,
@@ -396,4 +396,5 @@ class LiveAvr:
             enabled=self._enabled, beam=int(status["beam"]) / 255 * self._full if rate >= 1.0 else 0.0,
             line=int(held.line[int(sample.row[0])]) if len(held) else 0,
             inputs=self.inputs.levels(), outputs=dict(self.outputs), troubles=troubles, caught=self._caught,
+            settable=bool(self.transport.stride),
         )  # fmt: skip

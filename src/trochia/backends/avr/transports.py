@@ -6,6 +6,7 @@ A transport is told the time and given bytes; it gives back the bytes that have 
 from __future__ import annotations
 
 import time
+from contextlib import suppress
 from typing import TYPE_CHECKING, Protocol
 
 import serial
@@ -32,10 +33,13 @@ class Transport(Protocol):
         Of the line.
     stride
         How far :meth:`exchange` goes at once, at most [s]; 0 where time passes by itself.
+    place
+        Where the chip is, for a person.
     """
 
     baud: int
     stride: float
+    place: str
 
     def exchange(self, data: bytes, now: float) -> bytes:
         """Send bytes, let time go on to ``now``, and return the bytes that have come.
@@ -57,6 +61,16 @@ class Transport(Protocol):
 
     def close(self) -> None:
         """Let go of it."""
+        ...
+
+    def reopen(self) -> None:
+        """Take it again after it failed, and was let go of.
+
+        Raises
+        ------
+        LinkError
+            While it is not there.
+        """
         ...
 
 
@@ -81,6 +95,7 @@ class ChipTransport:
     """An image on the simulated chip; its clock is the caller's."""
 
     stride = 0.0005
+    place = "on a simulated chip"
 
     def __init__(self, program: Path, image: Path, *, baud: int = 1_000_000, mcu: str = "atmega328p") -> None:
         self.baud = baud
@@ -115,6 +130,10 @@ class ChipTransport:
         """End the simulation."""
         self.chip.close()
 
+    def reopen(self) -> None:
+        """Refuse: a simulated chip has no cable to put back."""
+        raise LinkError("the simulated chip has ended", hint="Begin again.")
+
 
 class SerialTransport:
     """A board on a serial port; time passes by itself.
@@ -130,6 +149,7 @@ class SerialTransport:
     def __init__(self, port: str, *, baud: int = 115_200) -> None:
         self.baud = baud
         self.name = port
+        self.place = f"on {port}"
         self._port = opened(port, baud)
 
     def exchange(self, data: bytes, now: float) -> bytes:  # noqa: ARG002 - time passes by itself
@@ -160,4 +180,9 @@ class SerialTransport:
 
     def close(self) -> None:
         """Close the port."""
-        self._port.close()
+        with suppress(OSError):  # of a device that is gone
+            self._port.close()
+
+    def reopen(self) -> None:
+        """Open the port again; see :class:`Transport`."""
+        self._port = opened(self.name, self.baud)

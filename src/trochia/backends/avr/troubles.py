@@ -7,12 +7,17 @@ from __future__ import annotations
 
 import re
 
+from trochia.backends.live import Trouble
 from trochia.messages import Cause
 
 #: of a stop, as the chip names it -> of an alarm
 TROUBLES = {
-    "missed": Cause.UNDERRUN, "late_cut": Cause.UNDERRUN, "bad_span": Cause.UNDERRUN, "silence": Cause.LINK,
-    "estop": Cause.ESTOP,
+    "low": Trouble(cause=Cause.UNDERRUN),
+    "missed": Trouble(cause=Cause.UNDERRUN, text="the board could not make a step in time, and stopped at once"),
+    "late_cut": Trouble(cause=Cause.UNDERRUN, text="an order came too late to the board, which braked along the path"),
+    "bad_span": Trouble(cause=Cause.UNDERRUN, text="motion came to the board out of order, and it braked"),
+    "silence": Trouble(cause=Cause.LINK, text="the board heard nothing from here, and braked along the path"),
+    "estop": Trouble(cause=Cause.ESTOP, text="emergency stop, by the board's own input"),
 }  # fmt: skip
 GRBL = re.compile(rb"Grbl ?[\w.]*|<(?:Idle|Run|Hold|Jog|Alarm|Door|Check|Home|Sleep)[|:][^>\r\n]*>")
 

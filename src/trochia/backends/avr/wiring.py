@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
     from trochia.backends.live import Orders, Watch
     from trochia.machine.machine import Machine
+    from trochia.machine.panel import Panel
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -89,6 +90,11 @@ class Wiring:
         put["mask"] = self.mask | sum(1 << self.outputs[name] for name in orders.outputs if name in self.outputs)
         put["outputs"] = self.levels(values)
         return put.tobytes()
+
+    def stops(self, panel: Panel | None) -> int:
+        """Return the inputs at which the board stops by itself, a bit each: an emergency stop that pulls one low."""
+        bit, active = self.inputs.get((panel.estop if panel is not None else None) or "", (0, 1))
+        return 0 if active else 1 << bit
 
     def look(self, watch: tuple[Watch, ...]) -> bytes:
         """Return the order that watches inputs."""
