@@ -49,14 +49,23 @@ class Place:
         self.client.command(command)
 
     def until(self, wanted: Callable[[Status], bool] | str) -> Status:
+        """Wait for a state; an alarm ends the wait unless that is waited for."""
+
         def there(now: Status) -> bool:
             assert now.state != "alarm" or wanted == "alarm", now.alarms
             return now.state == wanted if isinstance(wanted, str) else wanted(now)
 
         return self.client.wait_until(there, timeout=PATIENCE)
 
+    def back(self) -> None:
+        """Wait until the board is connected again, and take note of the alarm."""
+        self.client.wait_until(lambda now: not self.runtime.backend.link.lost and bool(now.alarms), timeout=PATIENCE)  # type: ignore[attr-defined]
+        self.ok(c.Acknowledge())
+        self.client.wait_until(lambda now: now.state in {"off", "idle"}, timeout=PATIENCE)
+
     def ready(self) -> None:
-        self.ok(c.Enable())
+        if self.client.status.state == "off":
+            self.ok(c.Enable())
         self.until("idle")
         self.ok(c.Home())
         self.until(lambda now: now.state == "idle" and all(axis.trusted for axis in now.axes))
@@ -164,16 +173,11 @@ def test_a_cable_that_is_pulled_is_an_alarm_and_goes_on_when_it_is_back(place: P
     assert "connected to by itself" in alarm.remedy
     assert not any(axis.trusted or axis.velocity for axis in status.axes)
     place.board.replug()
-    place.until(lambda now: bool(now.alarms) and place.runtime.backend.link.lost == "")  # type: ignore[attr-defined]
-    place.ok(c.Acknowledge())
-    status = place.until(lambda now: now.state in {"off", "idle"})
+    place.back()
+    status = place.client.status
     assert status.axes[0].commanded == pytest.approx(place.steps()[0] / UNITS)  # it braked, and kept count
     assert 0 < place.steps()[0] <= 12 * UNITS
-    if status.state == "off":
-        place.ok(c.Enable())
-    place.until("idle")
-    place.ok(c.Home())
-    place.until(lambda now: now.state == "idle" and all(axis.trusted for axis in now.axes))
+    place.ready()
     place.ok(c.JogTo(position={"X": 0.0}))
     place.until(lambda now: now.state == "idle" and now.axes[0].commanded == pytest.approx(0.0, abs=1e-9))
     assert place.steps().tolist() == [0, 0, 0]
@@ -187,8 +191,7 @@ def test_a_board_that_is_reset_while_it_moves_is_an_alarm(place: Place) -> None:
     place.board.board.reset()
     status = place.until("alarm")
     assert "nothing has been heard from the board for 0.5 s" in status.alarms[0].message
-    place.until(lambda _now: place.runtime.backend.link.lost == "")  # type: ignore[attr-defined]
-    place.ok(c.Acknowledge())
+    place.back()
     place.until("off")  # a chip that was reset has its drives off
     with pytest.raises(Refused, match="not taken while off"):
         place.ok(c.Run())
