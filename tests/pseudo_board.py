@@ -111,6 +111,10 @@ class LiveChip:
         self._looks, self._looked = self._looks + 1, self.at
         return 100.0 + self.at
 
+    def leave(self) -> None:
+        """Go on without a host."""
+        self._looks = 0
+
     def close(self) -> None:
         self.chip.close()
 

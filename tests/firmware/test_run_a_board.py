@@ -53,6 +53,7 @@ def test_a_program_on_the_shield(
     assert done.exit_code == 0, done.output
     told = json.loads(done.stdout)
     assert (told["ok"], told["state"], told["alarms"]) == (True, "idle", [])
+    board.board.leave()
     end = board.board.at + 0.1
     while board.board.at < end:
         time.sleep(0.01)
