@@ -42,6 +42,31 @@ def mover_options(*kinds: str) -> Callable[[Callable[..., None]], Callable[..., 
     return decorate
 
 
+def board_named(board: str) -> str:
+    """Return the name of a board, if there is such a one."""
+    from trochia.backends.avr.wiring import BOARDS  # noqa: PLC0415 - only where there is one
+
+    if board not in BOARDS:
+        raise click.UsageError(f"no board is called {board!r}; there are {', '.join(BOARDS)}")
+    return board
+
+
+def _or_none(_context: click.Context, _parameter: click.Parameter, value: str | None) -> str | None:
+    return None if value is None else board_named(value)
+
+
+def for_board(command: Callable[..., None]) -> Callable[..., None]:
+    """Add the options that say for which board to judge; the command gets them as ``board`` and ``baud``."""
+    for decorate in (
+        click.option("--baud", type=click.IntRange(min=1200), default=115200, show_default=True,
+                     help="The board's baud rate."),
+        click.option("--board", metavar="BOARD", callback=_or_none,
+                     help="Judge whether this board with Trochia's image can run it, too."),
+    ):  # fmt: skip
+        command = decorate(command)
+    return command
+
+
 def check(backend: str, port: str | None, *, virtual: bool = False, kept: bool = False) -> None:
     """Refuse options that do not go together; ``kept``: a journal or a recording is asked for."""
     if (backend in PORTED) != (port is not None):
@@ -68,10 +93,8 @@ def mover(
 
     if backend in OURS:
         from trochia.backends.avr.live_avr import LiveAvr  # noqa: PLC0415 - only where there is one
-        from trochia.backends.avr.wiring import BOARDS  # noqa: PLC0415
 
-        if board not in BOARDS:
-            raise click.UsageError(f"no board is called {board!r}; there are {', '.join(BOARDS)}")
+        board = board_named(board)
         if port is None:
             from trochia.backends.avr.simulator import simulated  # noqa: PLC0415
 
