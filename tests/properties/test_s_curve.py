@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 
 from trochia.kernels import scurve
 from trochia.planner import PROFILES, path_of, plan
+from trochia.program import Dwell, MoveKind, PathMode
 from trochia.toolpath import build
 
 SOAK = Path(__file__).parents[1] / "soak"
@@ -126,6 +127,27 @@ def test_no_join_of_the_passes_fails(monkeypatch):
         program = soak["program_of"](seed, machine)
         plan(build(program, machine, continuity=2), machine, program=program, profile="s-curve")
     assert len(plans) == 2
+
+
+@pytest.mark.parametrize("name", ["mill", "rotary"])
+@given(data=st.data())
+def test_what_lies_before_a_stop_does_not_change_what_follows(motion, name, data):
+    """Thirty metres behind, where s is known to 4e-12 mm, motion is that of the program alone."""
+    machine = machine_of(motion, name)
+    program = data.draw(motion.programs(machine))
+    led = np.concatenate([program.moves[:1], program.moves])
+    led["kind"][0], led["path_mode"][0] = MoveKind.RAPID, PathMode.EXACT_STOP
+    start = program.start.copy()
+    led["target"][0] = start
+    start[0] -= 30_000.0
+    rest = (Dwell(at=1, line=1, seconds=1.0),)
+    longer = dataclasses.replace(program, start=start, moves=led, actions=rest)
+    before = dataclasses.replace(longer, moves=led[:1])
+    parts = [
+        plan(path_of(part, machine, PROFILES["s-curve"]), machine, program=part, profile="s-curve").duration
+        for part in (before, program, longer)
+    ]
+    assert parts[0] + parts[1] == pytest.approx(parts[2], abs=1e-10)
 
 
 def test_a_sample_of_the_campaign_of_plans():
