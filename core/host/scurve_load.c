@@ -3,6 +3,7 @@
 
 #include "host/limits.h"
 #include "host/scurve_march.h"
+#include "host/scurve_rows.h"
 
 static const double ARC_PART = 0.2618; /* rad: 15 degrees; a row sees cosine and sine of its own part of the circle */
 static const double ARC_FINE = 0.0524; /* rad: 3 degrees on wide arcs, so that ramps find places to begin and end */
@@ -86,45 +87,89 @@ static double longest_along(const double (*x)[36], uint32_t n, uint32_t linear, 
 }
 
 /* Raises a stretch by one row. */
-static void bind(trochia_stretch *stretch, trochia_sizes size, double velocity, double acceleration, double jerk) {
+static void bind(trochia_stretch *stretch, trochia_rows *rows, trochia_sizes size, double velocity, double acceleration,
+                 double jerk) {
     stretch->ceiling = trochia_smaller(stretch->ceiling, velocity / size.along);
     stretch->along_a = trochia_larger(stretch->along_a, size.along / acceleration);
     stretch->bend_a = trochia_larger(stretch->bend_a, size.bend / acceleration);
     stretch->along_j = trochia_larger(stretch->along_j, size.along / jerk);
     stretch->bend_j = trochia_larger(stretch->bend_j, 3.0 * size.bend / jerk);
     stretch->twist_j = trochia_larger(stretch->twist_j, size.twist / jerk);
+    uint32_t i = rows->count++;
+    if (i >= TROCHIA_ROWS_KEPT)
+        return;
+    rows->along_a[i] = size.along / acceleration;
+    rows->bend_a[i] = size.bend / acceleration;
+    rows->along_j[i] = size.along / jerk;
+    rows->bend_j[i] = 3.0 * size.bend / jerk;
+    rows->twist_j[i] = size.twist / jerk;
 }
 
-static void load_line(const double *direction, const trochia_limits *limits, trochia_stretch *stretch) {
+static double dot_of(const double *a, const double *b, uint32_t n) {
+    double sum = 0.0;
+    for (uint32_t i = 0; i < n; i++)
+        sum += a[i] * b[i];
+    return sum;
+}
+
+/* A bound of |x' . x''| on a cubic: the second derivative of that is 3 x'' . x'''. */
+static double slant_of(const double (*x)[36], uint32_t n, uint32_t linear, double length) {
+    double slant = 0.0, change = 0.0;
+    for (int end = 0; end < 2; end++) {
+        const double *bend = x[end] + 2 * n;
+        slant = fmax(slant, fabs(dot_of(x[end] + n, bend, linear)));
+        change = fmax(change, fabs(dot_of(bend, bend + n, linear)));
+    }
+    return slant + 3.0 / 8.0 * length * length * change;
+}
+
+/* The same by the caps on the vector: what lies across adds up by its square. */
+static void bind_vector(trochia_stretch *stretch, trochia_rows *rows, trochia_sizes size, double slant,
+                        const trochia_limits *limits) {
+    double a = limits->path_acceleration, j = limits->path_jerk;
+    uint32_t at = rows->count;
+    bind(stretch, rows, size, limits->path_velocity, a, j);
+    if (at >= TROCHIA_ROWS_KEPT)
+        return;
+    rows->count = at;
+    slant = fmin(slant, size.along * size.bend);
+    if (a < INFINITY)
+        rows->vector_a = (trochia_vector){size.along / a, size.bend / a, slant / (a * a), 0.0};
+    if (j < INFINITY)
+        rows->vector_j = (trochia_vector){size.along / j, 3.0 * size.bend / j, 3.0 * slant / (j * j), size.twist / j};
+}
+
+static void load_line(const double *direction, const trochia_limits *limits, trochia_stretch *stretch,
+                      trochia_rows *rows) {
     for (uint32_t i = 0; i < limits->rows; i++) {
         trochia_sizes size = {fabs(trochia_dot_row(limits, i, direction)), 0.0, 0.0};
-        bind(stretch, size, limits->velocity[i], limits->acceleration[i], limits->jerk[i]);
+        bind(stretch, rows, size, limits->velocity[i], limits->acceleration[i], limits->jerk[i]);
     }
     trochia_sizes size = {trochia_norm(direction, limits->linear), 0.0, 0.0};
-    bind(stretch, size, limits->path_velocity, limits->path_acceleration, limits->path_jerk);
+    bind(stretch, rows, size, limits->path_velocity, limits->path_acceleration, limits->path_jerk);
 }
 
 /* Returns the greatest |x'| where that exceeds 1: the feed is that along the path. */
 static double load_arc(const trochia_segment *segment, const double *c, double from, double to,
-                       const trochia_limits *limits, trochia_stretch *stretch) {
+                       const trochia_limits *limits, trochia_stretch *stretch, trochia_rows *rows) {
     uint32_t n = limits->axes;
     const double *slope = c + 6 + n;
     for (uint32_t i = 0; i < limits->rows; i++) {
         double m0 = limits->matrix[i * n + segment->first], m1 = limits->matrix[i * n + segment->second];
         trochia_sizes size = arc_row(segment, c, n, m0, m1, trochia_dot_row(limits, i, slope), from, to);
-        bind(stretch, size, limits->velocity[i], limits->acceleration[i], limits->jerk[i]);
+        bind(stretch, rows, size, limits->velocity[i], limits->acceleration[i], limits->jerk[i]);
     }
     double rise = trochia_norm(slope, limits->linear), r = fmax(c[2], c[2] + c[5] * segment->length);
     double w = fmax(fabs(c[4]), fabs(c[4] + 2.0 * c[6 + 2 * n] * segment->length)), rate = fabs(c[5]);
     double twist = fabs(2.0 * c[6 + 2 * n]), stretched = sqrt(r * w * r * w + rate * rate + rise * rise);
     trochia_sizes size = {stretched, r * (w * w + twist) + 2.0 * rate * w,
                           r * w * w * w + 3.0 * rate * w * w + 3.0 * r * w * twist + 3.0 * rate * twist};
-    bind(stretch, size, limits->path_velocity, limits->path_acceleration, limits->path_jerk);
+    bind_vector(stretch, rows, size, twist == 0.0 && rate == 0.0 ? 0.0 : INFINITY, limits);
     return stretched;
 }
 
 static double load_cubic(const trochia_segment *segment, const double *pool, const trochia_limits *limits,
-                         trochia_stretch *stretch) {
+                         trochia_stretch *stretch, trochia_rows *rows) {
     double x[2][36], length = segment->length;
     uint32_t n = limits->axes, linear = limits->linear;
     trochia_segment_at(segment, pool, n, 0.0, 4, x[0]);
@@ -134,12 +179,12 @@ static double load_cubic(const trochia_segment *segment, const double *pool, con
             cubic_row(trochia_dot_row(limits, i, x[0] + n), trochia_dot_row(limits, i, x[1] + n),
                       trochia_dot_row(limits, i, x[0] + 2 * n), trochia_dot_row(limits, i, x[1] + 2 * n),
                       trochia_dot_row(limits, i, x[0] + 3 * n));
-        bind(stretch, size, limits->velocity[i], limits->acceleration[i], limits->jerk[i]);
+        bind(stretch, rows, size, limits->velocity[i], limits->acceleration[i], limits->jerk[i]);
     }
     trochia_sizes size = {longest_along(x, n, linear, length),
                           fmax(trochia_norm(x[0] + 2 * n, linear), trochia_norm(x[1] + 2 * n, linear)),
                           trochia_norm(x[0] + 3 * n, linear)};
-    bind(stretch, size, limits->path_velocity, limits->path_acceleration, limits->path_jerk);
+    bind_vector(stretch, rows, size, slant_of(x, n, linear, length), limits);
     return size.along;
 }
 
@@ -202,12 +247,15 @@ static void load(const trochia_segment *segment, const double *pool, const troch
     const double *c = pool + segment->data;
     double step = segment->length / parts, stretched = 1.0;
     *stretch = (trochia_stretch){.length = step, .ceiling = INFINITY};
+    trochia_rows rows;
+    rows.count = 0;
+    rows.vector_a.along = rows.vector_j.along = 0.0;
     if (segment->kind == TROCHIA_LINE)
-        load_line(c + limits->axes, limits, stretch);
+        load_line(c + limits->axes, limits, stretch, &rows);
     else if (segment->kind == TROCHIA_ARC_SEGMENT)
-        stretched = load_arc(segment, c, step * part, step * (part + 1), limits, stretch);
+        stretched = load_arc(segment, c, step * part, step * (part + 1), limits, stretch, &rows);
     else
-        stretched = load_cubic(segment, pool, limits, stretch);
+        stretched = load_cubic(segment, pool, limits, stretch, &rows);
     double feed = segment->speed_limit / (stretched > 1.0 + 1e-12 ? stretched : 1.0);
     stretch->over = segment->speed_limit < INFINITY && stretch->ceiling < segment->speed_limit * (1.0 - 1e-9);
     stretch->ceiling = trochia_smaller(stretch->ceiling, feed);
@@ -219,6 +267,7 @@ static void load(const trochia_segment *segment, const double *pool, const troch
     if (stretch->twist_j > 0.0)
         stretch->free = trochia_smaller(stretch->free, 1.0 / cbrt(stretch->twist_j));
     stretch->ceiling = trochia_smaller(stretch->ceiling, RESERVE * stretch->free);
+    trochia_relax(&rows, stretch);
 }
 
 void trochia_scurve_load(const trochia_segment *segments, const double *pool, uint64_t count,
