@@ -11,9 +11,9 @@
 typedef struct {
     double length, start;            /* start: s summed over the stretches since a stop, or the beginning */
     double ceiling;                  /* greatest v that may be held all along it */
-    double free;                     /* v at which turning leaves nothing; infinite on lines */
-    double along_a, bend_a;          /* greatest |q'| / A, |q''| / A */
-    double along_j, bend_j, twist_j; /* greatest |q'| / J, 3 |q''| / J, |q'''| / J */
+    double free;                     /* v from which on turning may leave nothing; infinite on lines */
+    double along_a, bend_a;          /* greatest |q'| / A; what turning takes of a, at most |q''| / A */
+    double along_j, bend_j, twist_j; /* the same of jerk: |q'| / J, 3 |q''| / J, |q'''| / J */
     double most_a, most_j;           /* 1 / along_a and 1 / along_j: on a line, and where nothing turns */
     /* what -x'' along x' is more than the line's at its start and its end: a is 0 inside, and that times v^2 (negative
      * before, positive after) on the lines beside it */
