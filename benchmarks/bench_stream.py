@@ -16,7 +16,7 @@ import shapes
 from bench_planner import chain
 from harness import machine as processor
 from trochia.machine.load import load
-from trochia.planner import PROFILES, plan
+from trochia.planner import PROFILES, path_of, plan
 from trochia.planner.live import LivePlan, StreamPlanner
 from trochia.toolpath import build
 
@@ -49,7 +49,7 @@ def programs(most: int = MOVES) -> dict[str, Program]:
 def whole(machine: Machine, program: Program, profile: str) -> float:
     """Return the processor time [s] of planning a program as a whole, to its phases."""
     begun = time.process_time()
-    path = build(program, machine, continuity=PROFILES[profile].continuity)
+    path = path_of(program, machine, PROFILES[profile])
     for _ in plan(path, machine, program=program, profile=profile).blocks():
         pass
     return time.process_time() - begun

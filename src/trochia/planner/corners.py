@@ -69,10 +69,13 @@ def paced(path: Toolpath, limits: Limits) -> Toolpath:
 
 def _slower(program: Program, machine: Machine, profile: Profile, path: Toolpath) -> NDArray[np.bool_]:
     """Return which moves are blended in a section that takes less time with stops (moves,)."""
+    slower = np.zeros(len(program.moves), dtype=np.bool_)
+    firsts, bounds = _sections(path, len(slower))
+    weighed = np.diff(bounds) <= MOST
+    if not weighed.any():
+        return slower
     blended = _blended(program, machine)
-    slower = np.zeros(len(blended), dtype=np.bool_)
-    firsts, bounds = _sections(path, len(blended))
-    weighed = (np.diff(bounds) <= MOST) & (np.diff(np.concatenate([[0], np.cumsum(blended)])[bounds]) > 0)
+    weighed &= np.diff(np.concatenate([[0], np.cumsum(blended)])[bounds]) > 0
     if not weighed.any():
         return slower
     owner = np.repeat(np.arange(len(firsts)), np.diff(np.append(firsts, len(path))))
