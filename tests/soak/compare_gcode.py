@@ -25,7 +25,7 @@ from trochia.program import WorkState
 from trochia.program.tool_file import read_tools
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
 ORACLE = runpy.run_path(str(ROOT / "tests" / "oracle" / "conftest.py"))
 GOLDEN = runpy.run_path(str(ROOT / "tests" / "golden" / "rewrite.py"))
@@ -137,38 +137,50 @@ def kind_of(judge: Any, run: Any) -> str | None:
     return None if same else f"another line: reference: {why} | ours: {mine}"
 
 
-def campaign(first: int, count: int, jobs: int) -> Iterator[tuple[int, tuple[str, str]]]:
+def campaign(
+    differs: Callable[[int], tuple[str, str] | None], given: argparse.Namespace
+) -> Iterator[tuple[int, tuple[str, str]]]:
     """Yield the seeds that differ, and how."""
-    with ProcessPoolExecutor(jobs) as pool:
-        seeds = range(first, first + count)
-        for seed, found in zip(seeds, pool.map(differs, seeds, chunksize=50), strict=True):
+    with ProcessPoolExecutor(given.jobs) as pool:
+        seeds = range(given.seed, given.seed + given.count)
+        for seed, found in zip(seeds, pool.map(differs, seeds, chunksize=25), strict=True):
             if found is not None:
                 yield seed, found
 
 
-def main() -> int:
-    """Run a campaign as the command line has it, and return the exit code."""
-    parser = argparse.ArgumentParser(description="mutated G-code programs against rs274")
+def asked_for(description: str, show: Callable[[int], None]) -> argparse.Namespace | None:
+    """Return what the command line asks for; None where there is no reference, or where one case was to be shown."""
+    parser = argparse.ArgumentParser(description=description)
     parser.add_argument("--count", type=int, default=2000, help="how many cases")
     parser.add_argument("--seed", type=int, default=1, help="the first one")
     parser.add_argument("--jobs", type=int, default=1, help="worker processes")
-    parser.add_argument("--show", type=int, help="print the case of this seed")
+    parser.add_argument("--show", type=int, metavar="SEED", help="print this case and what both say")
     given = parser.parse_args()
     if ORACLE["RS274"] is None:
         print("LinuxCNC's rs274 is not installed (Debian package linuxcnc-uspace)")
-        return 0
+        return None
     if given.show is not None:
-        one, files = made(given.show)
-        sys.stdout.write(one.text.decode("latin-1"))
-        print(files, *(differs(given.show) or ("agree",)), sep="\n")
+        show(given.show)
+        return None
+    return given
+
+
+def show(seed: int) -> None:
+    """Print the program of a seed, and what both say."""
+    one, files = made(seed)
+    sys.stdout.write(one.text.decode("latin-1"))
+    print(files, *(differs(seed) or ("agree",)), sep="\n")
+
+
+def main() -> int:
+    """Run a campaign as the command line has it, and return the exit code."""
+    given = asked_for("mutated G-code programs against rs274", show)
+    if given is None:
         return 0
     kinds: collections.Counter[str] = collections.Counter()
-    for seed, (kind, details) in campaign(given.seed, given.count, given.jobs):
+    for seed, (kind, details) in campaign(differs, given):
         kinds[kind] += 1
-        if kinds[kind] == 1:
-            print(f"seed {seed}: {kind}\n{details}", flush=True)
-        else:
-            print(f"seed {seed}: {kind}", flush=True)
+        print(f"seed {seed}: {kind}", *[details] * (kinds[kind] == 1), sep="\n", flush=True)
     print(f"{given.count} cases, {sum(kinds.values())} differ")
     for kind, times in kinds.most_common():
         print(f"{times} times {kind}")

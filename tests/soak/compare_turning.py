@@ -10,22 +10,17 @@ Exit code 1: there were differences whose reason is not known.
 
 from __future__ import annotations
 
-import argparse
 import collections
 import itertools
 import random
 import subprocess
 import sys
-from concurrent.futures import ProcessPoolExecutor
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from compare_gcode import ORACLE, kind_of
+from compare_gcode import ORACLE, asked_for, campaign, kind_of
 from turning_laws import REASONS, reason
 
 from trochia.program import WorkState
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 CYCLES = ("G70", "G70", "G71", "G71", "G71", "G71.1", "G71.2", "G72", "G72", "G72.1", "G72.2")
 
@@ -112,15 +107,6 @@ def differs(seed: int) -> tuple[str, str] | None:
     return None if kind is None else (kind, reason(text.decode("ascii"), judge, run, asked) or "not known")
 
 
-def campaign(first: int, count: int, jobs: int) -> Iterator[tuple[int, tuple[str, str]]]:
-    """Yield the seeds that differ, and how."""
-    with ProcessPoolExecutor(jobs) as pool:
-        seeds = range(first, first + count)
-        for seed, found in zip(seeds, pool.map(differs, seeds, chunksize=25), strict=True):
-            if found is not None:
-                yield seed, found
-
-
 def show(seed: int) -> None:
     """Print the program of a seed, and the lines of both, those that differ marked."""
     text = program(seed)
@@ -133,20 +119,11 @@ def show(seed: int) -> None:
 
 def main() -> int:
     """Run a campaign as the command line has it, and return the exit code."""
-    parser = argparse.ArgumentParser(description="generated lathe programs against rs274")
-    parser.add_argument("--count", type=int, default=2000, help="how many cases")
-    parser.add_argument("--seed", type=int, default=1, help="the first one")
-    parser.add_argument("--jobs", type=int, default=1, help="worker processes")
-    parser.add_argument("--show", type=int, help="print the case of this seed")
-    given = parser.parse_args()
-    if ORACLE["RS274"] is None:
-        print("LinuxCNC's rs274 is not installed (Debian package linuxcnc-uspace)")
-        return 0
-    if given.show is not None:
-        show(given.show)
+    given = asked_for("generated lathe programs against rs274", show)
+    if given is None:
         return 0
     reasons: collections.Counter[str] = collections.Counter()
-    for seed, (kind, why) in campaign(given.seed, given.count, given.jobs):
+    for seed, (kind, why) in campaign(differs, given):
         reasons[why] += 1
         print(f"seed {seed}: {why}: {kind}", flush=True)
     print(f"{given.count} cases, {sum(reasons.values())} differ, {reasons['not known']} of them not known why")
