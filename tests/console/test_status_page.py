@@ -95,6 +95,7 @@ def test_a_viewer_logs_in_sees_it_run_and_stops_it(opened, served):
     log_in(page)
     has(page, "#state", "off")
     has(page, "#who", "eve (viewer), nobody has control")
+    has(page, "#mover", "digital twin")
     with Client.connect(f"http://127.0.0.1:{served.port}", "ada", PASSWORD) as ada:
         ada.take()
         has(page, "#who", "ada has control")

@@ -157,7 +157,8 @@ class Controller:
             axes=axis_statuses(self.machine, report, self.work, self.trusted), legal=legal(self.state),
             overrides=self.overrides, switches=self.switches, program=self._program(), request=self.request,
             alarms=tuple(self.alarms.latched), speed=float(np.linalg.norm(self.velocity)), rate=report.rate,
-            backend=self.title, beam=report.beam, armed=self.lightable, spindle=report.outputs.get("spindle", 0.0),
+            backend=self.title, beam=report.beam, armed=self.machine.beam is not None and self.lightable,
+            spindle=report.outputs.get("spindle", 0.0),
             flood=bool(report.outputs.get("flood")), mist=bool(report.outputs.get("mist")), tool=self.work.tool,
             system=self.work.active, io=io_of(report), queued_s=report.queued, message=self._message(),
         )  # fmt: skip

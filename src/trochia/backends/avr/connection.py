@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 CONNECT = 3.0  #: a board may take that long to answer after its reset [s]
 LATENCY = 0.02  #: of an order to a chip that waits for its host [s]
 LATE = 0.01  #: that turns of a host, and a plug on its USB, may take besides [s]
+AWAY = 0.1  #: a host that was away for longer cannot say that the board was silent [s]
 AGAIN = 1.0  #: between openings of a port that failed [s]
 
 
@@ -108,6 +109,8 @@ class Connection:
             if self._closed_at is not None and not self._open_again(now):
                 self.now = now
                 return told
+            if now - self.now > AWAY:
+                self.session.listen(now)
             came = self.transport.exchange(self.session.outgoing(self.now), now)
             self.now = now
             for event in self.session.receive(came, now):

@@ -148,6 +148,10 @@ class Session:
         self._next += 1
         return self._next - 1
 
+    def listen(self, now: float) -> None:
+        """Take silence for silence from now on [s]: before, nobody here was listening."""
+        self._heard = max(self._heard, now)
+
     def ask(self) -> None:
         """Ask for a status."""
         self._loose.append(frame(0, TYPES["ask"], b""))

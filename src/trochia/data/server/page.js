@@ -139,7 +139,7 @@ function facts() {
   const percent = (value) => `${Math.round(value * 100)} %`;
   const found = [];
   if (program) {
-    found.push(fact("Line", `${program.line ?? 0} of ${program.lines}`));
+    found.push(program.time_s ? fact("Line", `${program.line ?? 0} of ${program.lines}`) : fact("Lines", `${program.lines}`));
     if (program.time_s) found.push(fact("Time left", seconds(program.remaining_s ?? 0)));
   }
   found.push(fact("Path speed", `${number(status.speed, 1)} mm/s`));
@@ -155,6 +155,7 @@ function draw() {
   const stale = !socket || performance.now() - arrived > STALE;
   document.body.classList.toggle("stale", stale);
   set(at("machine"), status.machine);
+  set(at("mover"), status.backend === "twin" ? "digital twin" : status.backend);
   set(at("state"), status.state === "estop" ? "Emergency stop" : status.state);
   document.title = `${status.state} – ${status.machine}`;
   set(at("fresh"), stale ? "no news from the machine: what is shown is old" : "");
@@ -171,6 +172,8 @@ function draw() {
   });
   fill(at("alarms"), alarms, () => element("div", [element("p"), element("p")]));
   at("alarms").hidden = !alarms.length;
+  at("message").hidden = !status.message;
+  set(at("message"), status.message ?? "");
   at("request").hidden = !status.request;
   set(at("request"), status.request ? status.request.text : "");
   if (session) {
