@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import signal
 import threading
-import time
 from ipaddress import ip_address
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,6 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from trochia.cli import options
+from trochia.cli.mover import check, clock_of, mover, mover_options
 
 if TYPE_CHECKING:
     from trochia.gateways.grbl.doors import Door
@@ -27,6 +27,7 @@ def command() -> None:
 
 @command.command()
 @options.machine
+@mover_options("twin", "avr", "simavr")
 @click.option("--tcp", metavar="HOST:PORT", help="Listen on a TCP port, as 127.0.0.1:2323; port 0 takes a free one.")
 @click.option("--pty", is_flag=True, help="Be a pseudo-terminal, for senders that want a serial port.")
 @click.option("--link", type=click.Path(path_type=Path), metavar="PATH", help="Name to give the pseudo-terminal.")
@@ -35,10 +36,10 @@ def command() -> None:
 @click.option("--journal", type=click.Path(file_okay=False, path_type=Path), metavar="DIR",
               help="Folder of the machine's journal; without it nothing is kept.")  # fmt: skip
 def grbl(
-    *, machine_name: str, tcp: str | None, pty: bool, link: Path | None, public: bool, arm_beam: bool,
-    journal: Path | None,
+    *, machine_name: str, backend: str, port: str | None, baud: int, board: str, tcp: str | None, pty: bool,
+    link: Path | None, public: bool, arm_beam: bool, journal: Path | None,
 ) -> None:  # fmt: skip
-    """Speak GRBL 1.1, on the machine's twin, until Ctrl-C: UGS, CNCjs, bCNC, LaserGRBL, LightBurn can connect.
+    """Speak GRBL 1.1 for a twin or a board, until Ctrl-C: UGS, CNCjs, bCNC, LaserGRBL, LightBurn can connect.
 
     Example: trochia gateway grbl -m router --pty --link /tmp/ttyTrochia
     """
@@ -46,21 +47,25 @@ def grbl(
         raise click.UsageError("say one of --tcp HOST:PORT and --pty")
     if link is not None and not pty:
         raise click.UsageError("--link names a pseudo-terminal: it needs --pty")
-    host, port = _address(tcp or "127.0.0.1:0", public=public)
-    from trochia.backends.live_twin import LiveTwin  # noqa: PLC0415 - `trochia --help` must stay light
-    from trochia.backends.switches import switches_of  # noqa: PLC0415
+    check(backend, port)
+    host, number = _address(tcp or "127.0.0.1:0", public=public)
+    from trochia.cli.setup import of_machine  # noqa: PLC0415 - `trochia --help` must stay light
+    from trochia.cli.user_codes import attach  # noqa: PLC0415
     from trochia.controller.runtime import Runtime  # noqa: PLC0415
     from trochia.gateways.grbl import Service, TcpDoor, TerminalDoor  # noqa: PLC0415
     from trochia.machine.load import load  # noqa: PLC0415
     from trochia.server.rest import bring_to_rest  # noqa: PLC0415
 
     machine = load(machine_name)
-    door: Door = TerminalDoor(link) if pty else TcpDoor(host, port)
-    runtime = Runtime(LiveTwin(machine, switches=switches_of(machine)), journal=journal, now=time.monotonic())
+    moves = mover(machine, backend, port=port, baud=baud, board=board)
+    door: Door = TerminalDoor(link) if pty else TcpDoor(host, number)
+    clock, reading = clock_of(backend), of_machine(machine_name)
+    runtime = Runtime(moves, journal=journal, work=reading.work, reading=reading, now=clock())
+    end_codes = attach(runtime, machine, machine_name)
     over = threading.Event()
     signal.signal(signal.SIGTERM, lambda _signal, _frame: over.set())
-    runtime.start()
-    click.echo(f"{machine.name} speaks GRBL 1.1 at {door.name} (Ctrl-C ends)")
+    runtime.start(clock)
+    click.echo(f"{machine.name} ({moves.title}) speaks GRBL 1.1 at {door.name} (Ctrl-C ends)")
     try:
         Service(runtime, door, arm=arm_beam).run(over)
     except KeyboardInterrupt:
@@ -69,6 +74,7 @@ def grbl(
         door.close()
         bring_to_rest(runtime)
         runtime.close()
+        end_codes()
 
 
 def _address(text: str, *, public: bool) -> tuple[str, int]:

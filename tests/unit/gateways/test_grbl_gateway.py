@@ -7,8 +7,14 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from trochia.controller.hooks import Hooks, codes_in
+from trochia.controller.runtime import Runtime
+from trochia.gateways.grbl import Service
+from trochia.program import WorkState
+
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from pathlib import Path
 
     from tests.unit.gateways.conftest import Plant
 
@@ -263,3 +269,21 @@ def test_noise_moves_nothing_and_is_survived(mill: Plant, noise: bytes) -> None:
     mill.say("\n")
     assert mill.say("G0 X1\n", 1.0)[-1] == "ok"
     assert mill.place()["X"] == pytest.approx(1.0)
+
+
+def test_codes_of_the_machines_own_run_their_programs(plants: Callable[..., Plant], tmp_path: Path) -> None:
+    script = tmp_path / "M101"
+    script.write_text('#!/bin/sh\necho "$@" >> ran\n')
+    script.chmod(0o755)
+    plant = plants()
+    codes = codes_in(tmp_path)
+    plant.runtime = Runtime(plant.runtime.backend, work=WorkState(user_codes=codes))
+    plant.service = Service(plant.runtime, plant.door)
+    hooks = Hooks(tmp_path, plant.runtime, blocking=True)
+    plant.say("")
+    assert plant.say("G21 G91 G1 X1 F600\nM101 P3 Q0.5\nG1 X1\n", 2.0) == ["ok"] * 3
+    plant.run(5.0, lambda: plant.place()["X"] == pytest.approx(2.0))
+    assert (tmp_path / "ran").read_text() == "3.000000 0.500000\n"
+    assert plant.say("M102\n") == ["error:20"]
+    assert plant.say("G1 X1 Q1\n") == ["error:20"]
+    hooks.close()

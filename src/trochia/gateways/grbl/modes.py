@@ -47,8 +47,12 @@ class Refused(Exception):  # noqa: N818 - it is GRBL's answer, not a mistake of 
 
 @dataclass(slots=True)
 class Modes:
-    """The modes as they stand, by group; feed in the units in force, speed as S gave it."""
+    """The modes as they stand, by group; feed in the units in force, speed as S gave it.
 
+    ``user`` are the codes M100 to M199 that the machine has programs for: those it has beside GRBL's.
+    """
+
+    user: frozenset[int] = frozenset()
     codes: dict[str, str] = field(default_factory=lambda: dict(_START))
     feed: float = 0.0
     speed: float = 0.0
@@ -78,7 +82,7 @@ class Modes:
         Refused
             With nothing changed.
         """
-        codes, values = words_of(line)
+        codes, values = words_of(line, self.user)
         motion = codes.get("motion", self.codes["motion"])
         axes = {letter for letter in values if letter in "XYZ"}
         moves = bool(axes) and codes.get("once") not in _TAKES_AXES and codes.get("length") != "G43.1"
@@ -118,6 +122,7 @@ class Modes:
         if once == "G10" and values.get("L") not in {2, 20}:
             raise Refused(20)
         used |= {"G4": {"P"}, "G10": {"P", "L"}}.get(once, set())
+        used |= {"P", "Q"} if "user" in codes else set()
         if set(values) - used:
             raise Refused(36)
 
@@ -136,8 +141,8 @@ def plain(line: str) -> str:
     return _REMARK.sub("", line).upper()
 
 
-def words_of(text: str) -> tuple[dict[str, str], dict[str, float]]:
-    """Return codes by modal group, and values by letter.
+def words_of(text: str, user: frozenset[int] = frozenset()) -> tuple[dict[str, str], dict[str, float]]:
+    """Return codes by modal group, and values by letter; ``user``: codes M100 to M199 that there are.
 
     Raises
     ------
@@ -152,13 +157,13 @@ def words_of(text: str) -> tuple[dict[str, str], dict[str, float]]:
         value = float(number)
         if letter in "GM":
             code = f"{letter}{value:g}"
-            group = _GROUPS.get(code)
+            group = "user" if letter == "M" and value in user else _GROUPS.get(code)
             if group is None:
                 raise Refused(20)
             if group in codes:
                 raise Refused(21)
             codes[group] = code
-        elif letter not in "FIJKLNPRSTXYZ":
+        elif letter not in "FIJKLNPRSTXYZ" and not (letter == "Q" and "user" in codes):
             raise Refused(20)
         elif letter in values:
             raise Refused(25)

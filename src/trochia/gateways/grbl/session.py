@@ -45,7 +45,7 @@ class Session:
 
     def __init__(self, runtime: Runtime, *, arm: bool = False) -> None:
         self.runtime = runtime
-        self.modes, self.queue, self.reporter = Modes(), Queue(), Reporter()
+        self.modes, self.queue, self.reporter = Modes(user=runtime.controller.hooked), Queue(), Reporter()
         self.locked = any(not axis.trusted for axis in runtime.status.axes)
         self.checking = False
         self.held = False
@@ -136,7 +136,7 @@ class Session:
         self._line.clear()
         self.held = self.checking = False
         self._homing = self._planned = False
-        self.modes = Modes()
+        self.modes = Modes(user=self.runtime.controller.hooked)
         if "abort" in self.status.legal:
             self.ask(c.Abort())
         self._resetting = True
@@ -307,6 +307,8 @@ class Session:
         if status.state == "idle" and (self.held or self.busy):
             jogs = self.queue.items and isinstance(self.queue.items[0], Jog)
             return "Hold:0" if self.held else "Jog" if jogs else "Run"
+        if status.state == "held" and status.request is not None and status.request.kind == "hook":
+            return "Run"  # a program of the machine's own; the job goes on by itself
         return STATES.get(status.state, "Alarm")
 
     def _left(self, status: Status) -> int:
