@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
-PULLED = ("returned no data", "Input/output error", "No such device")  #: what a port says whose board is gone
+PULLED = ("returned no data", "Input/output error", "No such device", "Write timeout")  #: what its port says then
 
 
 class Transport(Protocol):
