@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from trochia import api
+from trochia.analysis.problems import Severity
 from trochia.cli.progress import Progress
 from trochia.program import Log, Message, UserCode
 
@@ -41,10 +42,12 @@ def judge(
     reading: Reading,
     first_only: bool = True,
     tell: bool = True,
+    board: str | None = None,
+    baud: int = 115_200,
 ) -> Job:
     """Read the program (``-`` is standard input) and the machine, and judge the one on the other.
 
-    ``tell``: print what the program says; who runs it does that as it says it.
+    ``tell``: print what the program says; who runs it does that as it says it.  ``board``: whether it can do it, too.
     """
     machine = api.load(machine_name)
     name = "<stdin>" if program == "-" else program
@@ -52,6 +55,13 @@ def judge(
         progress("reading", 0.0)
         text = sys.stdin.buffer.read() if program == "-" else Path(program).read_bytes()
         verdict = api.check(text, machine, at=place, name=name, profile=profile, first_only=first_only, reading=reading)
+        if board is not None and verdict.plan is not None and verdict.ok:
+            from trochia.analysis.board import board_problems  # noqa: PLC0415 - only where there is one
+
+            progress("the board", 0.0)
+            found = (*verdict.problems, *board_problems(verdict.plan, board, baud))
+            worst_first = sorted(found, key=lambda problem: problem.severity is not Severity.ERROR)
+            verdict = replace(verdict, problems=tuple(worst_first))
     if tell and verdict.plan is not None:
         show_messages(verdict.plan.program.actions)
     return Job(name=name, text=text, machine=machine, verdict=verdict)

@@ -13,6 +13,7 @@ import numpy as np
 
 from trochia.cli import options
 from trochia.cli.job import judge
+from trochia.cli.mover import for_board
 from trochia.cli.tables import clock, show_plan, show_verdict, table
 from trochia.files import write_whole
 from trochia.program.source import SourceText
@@ -27,6 +28,7 @@ _WORTH = 0.0005  #: a limit that binds for less of the time is not worth a line
 
 @click.command()
 @options.common
+@for_board
 @click.option("--lines", "line_count", type=click.IntRange(min=0), default=5, show_default=True,
               help="How many of the slowest lines to list; with --json, 0 lists all lines.")  # fmt: skip
 @click.option("--explain", "explained", is_flag=True, help="Tell which limits bind, for how long, and in which lines.")
@@ -34,13 +36,13 @@ _WORTH = 0.0005  #: a limit that binds for less of the time is not worth a line
               help="Write the time of every line, and the limit that binds there longest, to FILE.")  # fmt: skip
 def command(
     *, program: str, machine_name: str, place: dict[str, float], profile: str | None, as_json: bool, reading: Reading,
-    line_count: int, explained: bool, csv_file: Path | None,
+    line_count: int, explained: bool, csv_file: Path | None, board: str | None, baud: int,
 ) -> None:  # fmt: skip
     """Time, length, extents and per-line timing of a program.
 
     Example: trochia plan part.ngc -m reference-mill --explain
     """
-    job = judge(program, machine_name, place, profile, reading=reading)
+    job = judge(program, machine_name, place, profile, reading=reading, board=board, baud=baud)
     plan = job.verdict.plan
     if plan is None or not job.verdict.ok:
         show_verdict(job.verdict)

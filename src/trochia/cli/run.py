@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from trochia.cli import options
-from trochia.cli.mover import check, clock_of, mover, mover_options
+from trochia.cli.mover import board_named, check, clock_of, mover, mover_options
 from trochia.cli.record_options import recording_options, tell_recorded
 
 if TYPE_CHECKING:
@@ -55,7 +55,8 @@ def command(
     from trochia.cli.job import judge, place_of  # noqa: PLC0415 - `trochia --help` must stay light
     from trochia.cli.tables import show_verdict  # noqa: PLC0415
 
-    job = judge(program, machine_name, place, profile, reading=reading, tell=False)
+    job = judge(program, machine_name, place, profile, reading=reading, tell=False,
+                board=board_named(board) if backend == "avr" else None, baud=baud)  # fmt: skip
     if job.verdict.plan is None or not job.verdict.ok:
         if as_json:
             options.print_json(job.verdict.figures())

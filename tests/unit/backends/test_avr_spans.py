@@ -10,7 +10,7 @@ from trochia.backends.segments import Segments
 
 
 def test_rows_that_begin_between_two_ticks_make_no_empty_spans():
-    """The slew is halved from row to row, so that each row is a span."""
+    """The slew falls to a fifth from row to row, so that each row is a span."""
     rows = 13
     length = 0.05 / rows  # 61,538.46 ticks
     starts = np.arange(rows) * length
@@ -21,7 +21,7 @@ def test_rows_that_begin_between_two_ticks_make_no_empty_spans():
     queue.add(
         Segments(
             duration=np.full(rows, length), joints=joints, line=np.ones(rows, np.uint32),
-            power=np.zeros(rows, np.float32), slew=300.0 * 0.5 ** np.arange(rows),
+            power=np.zeros(rows, np.float32), slew=np.geomspace(3000.0, 3000.0 * 0.2 ** (rows - 1), rows),
         ),
         0.0, 0.0,
     )  # fmt: skip

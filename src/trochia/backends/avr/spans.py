@@ -40,6 +40,10 @@ LONGEST = 1 << 20  #: ticks of a span
 TOLERANCE = 384.0  #: of a step [ticks]: 24 µs at 16 MHz
 LOOKED = 1 << 20  #: ticks of steps made at once
 SHARE = 0.92  #: of the slew its rows allow, at least, a span must allow
+BRIEF, LESS = (
+    0.016,
+    0.5,
+)  #: a span this short [s] may allow so much less: many short ones are more than a chip can take up
 KEPT = 0.95  #: of the slew is used: the chip's clock is not the host's
 CLOSEST = 64  #: two steps of a motor, unless its board needs more [ticks]: 4 µs
 
@@ -170,7 +174,9 @@ class SpanMaker:
         starts = np.rint((queue.starts[row:last] - self.origin) * self.clock).astype(np.int64)
         slews, lengths = queue.held.slew[row:last], queue.held.duration[row:last]
         least = np.minimum.accumulate(slews)
-        steep = np.flatnonzero(least * np.cumsum(lengths) < SHARE * np.cumsum(lengths * slews))
+        reach = np.cumsum(lengths)
+        share = np.where(reach <= BRIEF, LESS, SHARE)
+        steep = np.flatnonzero(least * reach < share * np.cumsum(lengths * slews))
         rows = int(steep[0]) if steep.size else len(starts)
         end = min(end, int(starts[rows])) if rows < len(starts) else end
         levels = [self._power(power) for power in queue.held.power[row : row + rows].tolist()]
