@@ -16,7 +16,7 @@ import numpy as np
 from trochia.planner.limits import Limits
 from trochia.planner.rests import Rests
 from trochia.program import Dwell, MoveKind, PathMode
-from trochia.toolpath import Toolpath, build
+from trochia.toolpath import Toolpath, build, rests_before
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -75,17 +75,22 @@ def _slower(program: Program, machine: Machine, profile: Profile, path: Toolpath
     if not weighed.any():
         return slower
     blended = _blended(program, machine)
-    weighed &= np.diff(np.concatenate([[0], np.cumsum(blended)])[bounds]) > 0
-    if not weighed.any():
+    own = weighed & (np.diff(np.concatenate([[0], np.cumsum(blended)])[bounds]) > 0)
+    if not own.any():
         return slower
+    beside = np.concatenate([[False], own, [False]])  # a line that Q has bent may have made the stop between two
+    weighed &= own | beside[2:] | beside[:-2]
     owner = np.repeat(np.arange(len(firsts)), np.diff(np.append(firsts, len(path))))
     kept = weighed[owner]
     limits = Limits.of(machine, motors=profile.by_curves)
     number = np.cumsum(weighed) - 1
     passing = _times(replace(path, segments=path.segments[kept]), number[owner[kept]], profile, limits)
     begins, ends = bounds[:-1][weighed], bounds[1:][weighed]
-    stopping = _stopping(program, machine, profile, np.stack([begins, ends]), limits)
-    for begin, end in zip(*(edge[passing > stopping * (1.0 + SAME)] for edge in (begins, ends)), strict=True):
+    stopping, joined = _stopping(program, machine, profile, np.stack([begins, ends]), limits)
+    group = np.cumsum(np.concatenate([[True], ~joined[:-1]])) - 1
+    lost = np.bincount(group, passing) > np.bincount(group, stopping) * (1.0 + SAME)
+    lost &= np.bincount(group, ends - begins) <= MOST
+    for begin, end in zip(begins[lost[group]], ends[lost[group]], strict=True):
         slower[begin:end] = blended[begin:end]
     return slower
 
@@ -112,22 +117,29 @@ def _times(path: Toolpath, owner: NDArray[np.intp], profile: Profile, limits: Li
 
 
 def _stopping(program: Program, machine: Machine, profile: Profile, edges: NDArray[np.int64],
-              limits: Limits) -> NDArray[np.float64]:  # fmt: skip
-    """Return the time of each section, from the first of its moves up to the second (2, k), with stops (k,) [s]."""
-    begins, sizes = edges[0], edges[1] - edges[0] + 1  # each led to by a move, which is not counted
-    heads = np.concatenate([[0], np.cumsum(sizes)])
-    inside = np.arange(heads[-1]) - np.repeat(heads[:-1], sizes)
-    rows = np.repeat(begins - 1, sizes) + inside
+              limits: Limits) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:  # fmt: skip
+    """Return the time of each section, from the first of its moves up to the second (2, k), with stops (k,) [s].
+
+    And whether it then goes on into the next one (k,): where Q has bent a line so that it begins with a corner.
+    """
+    begins, ends = edges
+    led = np.concatenate([[True], begins[1:] != ends[:-1]])  # by a move that is not counted
+    heads = np.concatenate([[0], np.cumsum(ends - begins + led)])
+    number = np.repeat(np.arange(len(begins)), np.diff(heads))
+    inside = np.arange(heads[-1]) - heads[number]
+    rows, leading = begins[number] - led[number] + inside, led[number] & (inside == 0)
     moves = program.moves[np.maximum(rows, 0)]
     moves["path_mode"][moves["path_mode"] != PathMode.EXACT_STOP] = PathMode.EXACT_PATH
-    leading = inside == 0
     moves["kind"][leading], moves["path_mode"][leading] = MoveKind.RAPID, PathMode.EXACT_STOP
     if begins[0] == 0:
         moves["target"][0] = program.start
-    rests = tuple(Dwell(at=at, line=0, seconds=0.0) for head in heads[:-1].tolist() for at in (head, head + 1))
-    alone = replace(program, moves=moves, actions=rests)
+    still = led | (rests_before(program, machine)[begins] != 0)
+    at = np.sort(np.concatenate([heads[:-1][still], heads[:-1][led] + 1])).tolist()
+    alone = replace(program, moves=moves, actions=tuple(Dwell(at=row, line=0, seconds=0.0) for row in at))
     path = build(alone, machine, continuity=profile.continuity)
-    move = path.segments["move"]
-    kept = ~leading[move]
-    owner = np.searchsorted(heads, move[kept], side="right") - 1
-    return _times(replace(path, segments=path.segments[kept]), owner, profile, limits)
+    kept = ~leading[path.segments["move"]]
+    segments = path.segments[kept]
+    owner = number[segments["move"]]
+    last = np.searchsorted(owner, np.arange(len(begins)), side="right") - 1
+    joined = (segments["stop"][last] == 0) & ~np.append(led[1:], True)
+    return _times(replace(path, segments=segments), owner, profile, limits), joined

@@ -5,7 +5,7 @@ it stays inside the travel.  No time, no limits.
 """
 
 from trochia.kernels.layout import SEGMENT
-from trochia.toolpath.build import SPLINE_ERROR, build
+from trochia.toolpath.build import SPLINE_ERROR, build, rests_before
 from trochia.toolpath.measure import Measure, measure, measure_program
 from trochia.toolpath.toolpath import SegmentKind, Toolpath
 from trochia.toolpath.travel import Outside, first_outside, fitting_shift
@@ -22,4 +22,5 @@ __all__ = [
     "fitting_shift",
     "measure",
     "measure_program",
+    "rests_before",
 ]

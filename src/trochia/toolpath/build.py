@@ -60,7 +60,7 @@ def build(
     if absent and absent[0] < _CURVED:  # curves may move it, and come back
         _refuse_absent(program, machine, absent)
     segments, pool, merged, fault = kernel.build(
-        program.moves, _rests(program, machine), start=program.start, columns=columns, absent=absent,
+        program.moves, rests_before(program, machine), start=program.start, columns=columns, absent=absent,
         tolerance=machine.path_tolerance if blend else -1.0, continuity=continuity, overlap=overlap,
         limits=_limits(machine), splines=_splines(program), room=room, first_row=first_row,
     )  # fmt: skip
@@ -85,7 +85,7 @@ def _limits(machine: Machine) -> NDArray[np.float64]:
     return np.array(rows, dtype=np.float64).T
 
 
-def _rests(program: Program, machine: Machine) -> NDArray[np.uint8]:
+def rests_before(program: Program, machine: Machine) -> NDArray[np.uint8]:
     """Return 1 for each move before which motion rests for an action (moves,).
 
     A beam is switched while the axes move; only a spindle needs time to start, stop and turn round.
