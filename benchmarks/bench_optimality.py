@@ -1,6 +1,9 @@
-"""Motion times of programs of every kind against the second-order optimum (TOPP-RA) of the very same path.
+"""Motion times of programs of every kind against the least times along the very same path.
 
-TOPP-RA knows no feeds: it is shown where these do not bind.  The last column compares limited jerk with the trapezoid.
+Trapezoids against TOPP-RA, which knows no feeds: it is shown where these do not bind.  Limited jerk against the least
+time that `third_order.py` finds: one that can be reached along that path, so at or above the least there is.  The rule:
+where that is up to 1.05 times the trapezoid's, limited jerk takes up to 1.15 times the trapezoid's; elsewhere up to 1.4
+times that least time.
 """
 
 from __future__ import annotations
@@ -8,20 +11,29 @@ from __future__ import annotations
 import dataclasses
 import math
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import toppra
 from toppra.interpolator import AbstractGeometricPath
 
+import shapes
+from bench_curvature import machine_of
+from third_order import third_order
 from trochia.languages import gcode
 from trochia.machine.load import load
 from trochia.planner import plan
+from trochia.planner.limits import Limits
 from trochia.toolpath import build
 
 if TYPE_CHECKING:
     from trochia.machine.machine import Machine
+    from trochia.program import Program
     from trochia.toolpath import Toolpath
+
+
+ANCHORS = Path(__file__).parents[1] / "tests" / "golden" / "anchors"
 
 
 def finishing() -> str:
@@ -48,6 +60,8 @@ PROGRAMS = {
         "G64 P0.01\nF60000\n" + "\n".join(f"G1 X{(k + 1) // 2 * 2} Y{k // 2 * 2}" for k in range(1, 21)),
     ),
     "helices": ("reference-mill", "G64 P0.01\nF60000\nG3 X0 Y0 I8 Z-3 P3\nG1 X5 Y-5 Z0\nG2 X25 Y-5 I10 Z4"),
+    "circle, radius 1 mm": ("reference-mill", "F60000\nG3 X0 Y0 I1"),
+    "circle, radius 10 mm": ("reference-mill", "F60000\nG3 X0 Y0 I10"),
     "rotary": ("rotary-mill", "G64 P0.02\nF60000\nG1 X10 A20\nX20 A60\nY10 A60\nX0 Y20 A0"),
     "feed changes": ("reference-mill", "G64 P0.05\nG1 X10 F60000\nX20 F1200\nY10\nX30 F60000\nY20 F600\nX40 F60000"),
     "locked to the spindle": ("reference-mill", "G64 P0.01\nS600 M3\nG95 F1\nG1 X10\nX20 Y10\nX30\nY0"),
@@ -89,24 +103,80 @@ def optimum(path: Toolpath, machine: Machine) -> float:
     return float((2.0 * np.diff(grid) / (speed[1:] + speed[:-1])).sum())
 
 
+class Times(NamedTuple):
+    """Motion times of one program [s]: planned, the second-order optimum (nan: none), and the third-order one found."""
+
+    trapezoid: float
+    second: float
+    third: float
+    jerk: float
+
+    @property
+    def row(self) -> str:
+        """Return the table's columns, the last of them whether the rule is kept."""
+        near = self.third <= 1.05 * self.trapezoid
+        most = 1.15 * self.trapezoid if near else 1.4 * self.third
+        shown = f"{self.second:.4f} | {self.trapezoid / self.second:.4f}" if math.isfinite(self.second) else " | "
+        return (
+            f"{self.trapezoid:.4f} | {shown} | {self.third:.4f} | {self.third / self.trapezoid:.3f} | {self.jerk:.4f}"
+            f" | {self.jerk / self.trapezoid:.3f} | {self.jerk / self.third:.3f}"
+            f" | {'1.15 trapezoid' if near else '1.4 bound'} {'kept' if self.jerk <= most else 'BROKEN'} |"
+        )
+
+
+def times_of(program: Program, machine: Machine, *, second: bool, step: float = 0.1) -> Times:
+    path = build(program, machine)
+    alone = second and path.segments["stop"].sum() == 1
+    smooth = plan(build(program, machine, continuity=2), machine, program=program, profile="s-curve")
+    jerk = smooth.times["motion"]
+    return Times(
+        trapezoid=plan(path, machine, program=program, profile="trapezoid").times["motion"],
+        second=optimum(path, machine) if alone else math.nan,
+        third=min(third_order(smooth.path, Limits.of(machine), smooth, step), jerk),  # a plan can be followed as well
+        jerk=jerk,
+    )
+
+
+def smooth_machine(model: str) -> Machine:
+    """Return a machine with a jerk limit on every axis: 25 times its acceleration a second where none is given."""
+    machine = load(model)
+    return dataclasses.replace(
+        machine,
+        axes=tuple(dataclasses.replace(axis, jerk=axis.jerk or 25.0 * axis.acceleration) for axis in machine.axes),
+    )
+
+
+def anchors() -> dict[str, Program]:
+    return {path.stem: gcode.read(path.read_text(), name=path.stem) for path in sorted(ANCHORS.glob("*.ngc"))}
+
+
+#: The corner model's files, of which the second-order optimum is in closed form (`bench_curvature.py`), in short.
+CORNERS = {
+    "curve, 300 x 0.2 mm": shapes.curve(300),
+    "… chords 0.14 to 0.26 mm": shapes.curve(300, spread=0.3),
+    "mixed, 100": shapes.mixed(100),
+    "zig-zag, 33 x 1 mm": shapes.zigzag(33),
+    "hatch, 33": shapes.hatch(33),
+}
+
+
 def main() -> None:
     toppra.setup_logging("ERROR")
     print("\n## Programs of every kind\n")
-    print("| program | trapezoid [s] | TOPP-RA, same path [s] | ratio | limited jerk [s] | to the trapezoid |")
-    print("|---|---|---|---|---|---|")
+    print(
+        "| program | trapezoid [s] | TOPP-RA, same path [s] | ratio | third-order bound, same path [s]"
+        " | to the trapezoid | limited jerk [s] | to the trapezoid | to the bound | rule |"
+    )
+    print("|---|---|---|---|---|---|---|---|---|---|")
     for name, (model, text) in PROGRAMS.items():
-        machine = load(model)
-        axes = tuple(
-            axis if axis.jerk else dataclasses.replace(axis, jerk=25.0 * axis.acceleration) for axis in machine.axes
-        )
-        machine = dataclasses.replace(machine, axes=axes)
-        program = gcode.read(text + "\nM2\n")
-        path = build(program, machine)
-        time = plan(path, machine, program=program, profile="trapezoid").times["motion"]
-        jerk = plan(build(program, machine, continuity=2), machine, program=program, profile="s-curve").times["motion"]
-        best = optimum(path, machine) if path.segments["stop"].sum() == 1 else math.nan
-        shown = f"{best:.4f} | {time / best:.4f}" if math.isfinite(best) else "feed or stops bind | "
-        print(f"| {name} | {time:.4f} | {shown} | {jerk:.4f} | {jerk / time:.3f} |")
+        times = times_of(gcode.read(text + "\nM2\n"), smooth_machine(model), second=True)
+        print(f"| {name} | {times.row}", flush=True)
+    for name, program in anchors().items():
+        print(f"| {name} | {times_of(program, load('reference-mill'), second=False).row}", flush=True)
+    for speed, acceleration, faster in ((100.0, 1000.0, ""), (300.0, 2000.0, ", faster")):
+        for name, points in CORNERS.items():
+            times = times_of(shapes.chain(points, speed), machine_of(acceleration), second=False, step=0.3)
+            print(f"| {name}{faster} | {times.row}", flush=True)
 
 
 if __name__ == "__main__":
