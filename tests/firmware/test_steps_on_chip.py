@@ -29,7 +29,7 @@ def run(chip_program: Path, board_image: Callable[[str], Path]) -> Callable[...,
 
 
 def test_a_sample_loses_and_doubles_none(run: Callable[..., subprocess.CompletedProcess[str]]):
-    done = run(str(SOAK / "steps_on_chip.py"), "--steps", "400000", "--seed", "3")
+    done = run(str(SOAK / "steps_on_chip.py"), "--steps", "200000", "--seed", "3")
     assert done.returncode == 0, done.stdout + done.stderr
     assert " 0 failed" in done.stdout
 

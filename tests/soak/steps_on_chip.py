@@ -34,7 +34,8 @@ import board_talk
 from trochia.kernels.link import CAUSES
 
 SPANS = 120  #: of a case
-TOGETHER = 4  #: cases a worker is given at once
+TOGETHER = 4  #: cases a worker is given at once, one where less than FEW steps are left
+FEW = 2_000_000
 PULSE = 24  #: ticks within which the pins of a pulse rise
 LATEST = 480  #: of a pulse behind its tick, the median's left out [cycles]
 CLOSEST = 60  #: pulses of a motor [cycles]
@@ -159,7 +160,8 @@ def run(made: Campaign, seeds: Any, chip: tuple[Path, Path], jobs: int) -> None:
     """Run cases until there were as many steps as are wanted."""
     with ProcessPoolExecutor(jobs) as pool:
         while made.steps < made.wanted:
-            lots = [list(itertools.islice(seeds, TOGETHER)) for _ in range(2 * jobs)]
+            few = 1 if made.wanted - made.steps < FEW else TOGETHER
+            lots = [list(itertools.islice(seeds, few)) for _ in range(2 * jobs)]
             for rows in pool.map(several, lots, itertools.repeat(chip)):
                 made.take(rows)
 
