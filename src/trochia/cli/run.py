@@ -56,7 +56,7 @@ def command(
     from trochia.cli.tables import show_verdict  # noqa: PLC0415
 
     job = judge(program, machine_name, place, profile, reading=reading, tell=False,
-                board=board_named(board) if backend == "avr" else None, baud=baud)  # fmt: skip
+                board=board_named(board) if backend in {"avr", "simavr"} else None, baud=baud)  # fmt: skip
     if job.verdict.plan is None or not job.verdict.ok:
         if as_json:
             options.print_json(job.verdict.figures())

@@ -31,15 +31,16 @@ class Cost(NamedTuple):
 
 _UNO = (
     Cost(60, 812, 12_580), Cost(149, 233, 13_407),
-    Cost(123, 267, 20_583), Cost(138, 250, 26_798), Cost(140, 265, 35_619),
+    Cost(123, 267, 20_583), Cost(138, 250, 26_798), Cost(200, 265, 35_619),
 )  # fmt: skip
 #: by board: one motor in runs of one interval; one whose interval bends often; two motors that share the grid, three …
-#: The Uno's are measured; the Mega's, measured up to three motors, are the Uno's and three tenths, which is more; five
-#: and six go on in a line.  The shield's step is what docs/reference/boards.md says, at worst.
+#: The Uno's are measured, but that a step of four motors takes 140 cycles at full rate, and more while it brakes.  The
+#: Mega's, measured up to three motors, are the Uno's and three tenths, which is more; five and six go by what can be
+#: held.  The shield's step is what docs/reference/boards.md says, at worst.
 COSTS: dict[str, tuple[Cost, ...]] = {
     "uno-stepdir": _UNO,
     "mega-stepdir": tuple(
-        Cost(*(1.3 * value for value in cost)) for cost in (*_UNO, Cost(171, 265, 43_500), Cost(184, 265, 51_000))
+        Cost(*(1.3 * value for value in cost)) for cost in (*_UNO, Cost(270, 265, 43_500), Cost(350, 265, 51_000))
     ),
     "uno-l293d": (Cost(450, 841, 15_000), Cost(450, 308, 15_000), Cost(450, 308, 20_000)),
 }
