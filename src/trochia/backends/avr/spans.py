@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from trochia.backends.queue import Queue
 
 LONGEST = 1 << 20  #: ticks of a span
-TOLERANCE = 384.0  #: of a step [ticks]: 24 µs at 16 MHz
+TOLERANCE = 304.0  #: of a step [ticks]: 19 µs at 16 MHz; with slots and lateness 25
 LOOKED = 1 << 20  #: ticks of steps made at once
 SHARE = 0.92  #: of the slew its rows allow, at least, a span must allow
 BRIEF, LESS = (
