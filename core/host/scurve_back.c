@@ -123,7 +123,8 @@ double trochia_room_at(const trochia_course *course, const trochia_arrest *arres
         double to_v = stretches[k].peak_v, to_s = stretches[k].peak_s;
         double from_v = k + 1 == b ? stretches[b].birth_v : stretches[k + 1].peak_v;
         double from_s = k + 1 == b ? stretches[b].birth_s : stretches[k + 1].peak_s;
-        if (arrest->s > from_s)
+        double clear = trochia_smaller(from_s, to_s) - fabs(from_s - to_s); /* the place may lie a little outside */
+        if (arrest->s > from_s || arrest->s < clear)
             return (v - from_v) / (to_v - from_v) * (to_s - from_s) + from_s - arrest->s;
     }
     return trochia_leave_at(course, arrest->stretch, v).s - arrest->s;
