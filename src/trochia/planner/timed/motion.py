@@ -15,7 +15,7 @@ from trochia.planner.trajectory import Trajectory
 from trochia.toolpath import SegmentKind, Toolpath
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
@@ -46,8 +46,9 @@ class TimedSchedule:
         """From first motion or rest to last [s]."""
         return self._pieces.duration
 
-    def phases(self, size: int) -> Iterator[NDArray[np.void]]:
-        """Yield all phases in order in blocks of at most ``size`` (PHASE,)."""
+    def phases(self, size: int, memory: Callable[[int], NDArray[np.void]] | None = None) -> Iterator[NDArray[np.void]]:
+        """Yield all phases in order in blocks of at most ``size`` (PHASE,); they are there, and need no ``memory``."""
+        del memory
         for first in range(0, len(self._phases), size):
             yield self._phases[first : first + size]
 
