@@ -16,6 +16,7 @@ from trochia.backends.live import Orders, Watch
 from trochia.controller.awaited import Awaited
 from trochia.controller.doings import Doings
 from trochia.controller.feeder import ROW, Feeder
+from trochia.controller.progress import Progress
 from trochia.controller.states import Event
 from trochia.errors import LocalProtocolError
 from trochia.planner.live import LivePlan
@@ -90,6 +91,7 @@ class Job:
         if (options.feed, options.rapid) != (1.0, 1.0):
             live.override(0.0, feed=options.feed, rapid=options.rapid)
         self.feeder = Feeder(live, machine, origin=origin, ahead=ahead, power=self.doings.power)
+        self._progress = Progress(plan, live)
         self._moves = plan.path.segments["move"]
         self._actions = plan.program.actions
         self._next = 0  # number of the first action that has not been sent
@@ -173,6 +175,7 @@ class Job:
         now = max(self.feeder.plan_time(report.executed), self.feeder.end)
         self._scale(now, feed, rapid)
         back = self.feeder.live.resume(now, relight=self._machine.beam is not None and not self.options.dark)
+        self._progress.resume(now)
         self.feeder.sent, self.feeder.lit_from, self.feeder.dark_until = now, back, back + ROW
         return back
 
@@ -189,6 +192,7 @@ class Job:
         now = max(self.feeder.plan_time(report.executed), self.feeder.end)
         switched = self._actions[self._next - 1].at if self._next else 0
         self.feeder.live.back_up(now, way, earliest=int(np.searchsorted(self._moves, switched)))
+        self._progress.reverse(now)
         self.feeder.sent, self.feeder.lit_from, self.feeder.dark_until = now, np.inf, np.inf
 
     def override(self, report: Report, latency: float, *, feed: float, rapid: float) -> None:
@@ -199,8 +203,8 @@ class Job:
             self._take_back(at)
 
     def place(self, report: Report) -> tuple[int, float]:
-        """Return the line executed and how far along the program's time [s]."""
-        return report.line, self.feeder.plan_time(report.executed)
+        """Return the line executed and how far along the program's time [s], which falls on a way back."""
+        return report.line, self._progress.at(self.feeder.plan_time(report.executed))
 
     def point(self, report: Report) -> dict[str, float]:
         """Return what the journal is told of the place executed: move of the program, way along its line [mm]."""
@@ -210,7 +214,7 @@ class Job:
         if self.entry is not None:
             distance = distance if move >= self.entry.way else 0.0
             move = self.entry.original(move)
-        return {"move": move, "distance": round(distance, 6), "done_s": t}
+        return {"move": move, "distance": round(distance, 6), "done_s": self._progress.at(t)}
 
     # -- inside
 

@@ -91,3 +91,47 @@ def test_what_is_not_held_is_not_reversed(bench: type[Any], mill: Machine) -> No
     answer = b.command(c.Reverse(way=1.0))
     assert "waits" in answer.reason
     assert b.status.state == "held"
+
+
+@pytest.mark.parametrize("feed", [1.0, 0.5])
+def test_progress_tells_the_place_on_the_program_which_falls_on_the_way_back(
+    bench: type[Any], mill: Machine, feed: float
+) -> None:
+    b = bench(mill).on()
+    b.ok(c.Override(feed=feed))
+    b.ok(c.Load(name="part", text=CORNER))
+    b.ok(c.Run())
+    out = []
+    while b.status.program.done_s < 1.2 / feed:
+        b.run(0.02)
+        out.append((b.at("X") + b.at("Y"), b.status.program.done_s))
+    b.ok(c.Hold())
+    b.run(until="held")
+    b.ok(c.Reverse(way=35.0))
+    back = []
+    while b.runtime.controller.state.value != "held":
+        b.run(0.02)
+        back.append((b.at("X") + b.at("Y"), b.status.program.done_s))
+    ways, falling = np.array(back).T
+    assert (np.diff(falling) <= 1e-9).all()
+    assert falling[0] - falling[-1] > 0.5 / feed
+    before = ways < out[-1][0] - 5.0  # where the hold had not braked it yet
+    assert falling[before] == pytest.approx(np.interp(ways[before], *np.array(out).T), abs=0.05 / feed)
+    began = b.now
+    b.ok(c.Resume())
+    b.run(0.3)
+    assert b.status.program.done_s - falling[-1] == pytest.approx(b.now - began, abs=0.03)
+
+
+def test_all_the_way_back_nothing_is_done_and_the_whole_time_is_left(bench: type[Any], mill: Machine) -> None:
+    b = held(bench, mill, CORNER, 0.6)
+    b.ok(c.Reverse(way=1000.0))
+    program = b.run(until="held").program
+    assert program.done_s == pytest.approx(0.0, abs=1e-3)
+    assert program.remaining_s == pytest.approx(program.time_s, abs=1e-3)
+    b.ok(c.Resume())
+    most = 0.0
+    while b.runtime.controller.state.value != "idle":
+        most = max(most, b.status.program.done_s)
+        b.run(0.02)
+    assert most == pytest.approx(program.time_s, abs=0.05)
