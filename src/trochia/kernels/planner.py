@@ -5,12 +5,14 @@ In: segments and coefficients, limits, rests.  Out: pieces (``PIECE``); phases, 
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trochia.kernels.layout import PHASE, SEGMENT, dtype_of, ffi, lib, pointer
+from trochia.kernels.layout import SEGMENT, dtype_of, ffi, lib, pointer
 from trochia.kernels.limits import limits_struct, rising_rests
+from trochia.kernels.phases import blocks, states
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -81,33 +83,15 @@ class Planned:
             raise ValueError(f"a block of phases needs room for {_LEAST_ROOM}, not {size}")
         cursor = ffi.new("trochia_phase_cursor *")
         segments, _ = self._path()
-        while True:
-            block = np.empty(size, dtype=PHASE) if memory is None else memory(size)[:size]
-            made = lib.trochia_plan_phases(
-                segments,
-                self._piece(),
-                len(self.pieces),
-                *self._rest(),
-                cursor,
-                pointer(block, "trochia_phase *"),
-                size,
-            )
-            if not made:
-                return
-            yield block[:made]
+        fill = partial(lib.trochia_plan_phases, segments, self._piece(), len(self.pieces), *self._rest(), cursor)
+        yield from blocks(fill, size, memory)
 
     def states(self, times: NDArray[np.float64]) -> NDArray[np.void]:
         """Return the state at each time [s], clamped to the ends (times,) of PHASE; needs at least one piece."""
         if not self.pieces.size:
             raise ValueError("a path without motion has no states")
-        held = np.ascontiguousarray(times, dtype=np.float64)
-        out = np.empty(held.shape, dtype=PHASE)
         segments, _ = self._path()
-        lib.trochia_plan_states(
-            segments, self._piece(), len(self.pieces), pointer(held, "double *"), held.size,
-            pointer(out, "trochia_phase *"),
-        )  # fmt: skip
-        return out
+        return states(partial(lib.trochia_plan_states, segments, self._piece(), len(self.pieces)), times)
 
     def move_times(self, moves: int) -> NDArray[np.float64]:
         """Return the time each of the program's moves takes (moves,) [s]; a blend counts to the move it enters."""

@@ -5,12 +5,14 @@ In: segments and coefficients, limits, rests.  Out: knots (``KNOT``); phases, st
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trochia.kernels.layout import PHASE, SEGMENT, dtype_of, ffi, lib, pointer
+from trochia.kernels.layout import SEGMENT, dtype_of, ffi, lib, pointer
 from trochia.kernels.limits import limits_struct, rising_rests
+from trochia.kernels.phases import blocks, states
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -118,6 +120,10 @@ class Ramps:
     def _knot(self) -> Any:  # noqa: ANN401 - a cffi pointer has no Python type
         return pointer(self.knots, "trochia_knot *")
 
+    def _read(self) -> tuple[Any, int, Any, int]:
+        """Return what readings begin with: where each segment begins, and the knots."""
+        return pointer(self._starts, "double *"), len(self._segments), self._knot(), len(self.knots)
+
     @property
     def duration(self) -> float:
         """Whole time, rests included [s]."""
@@ -130,25 +136,11 @@ class Ramps:
         if size < 1:
             raise ValueError(f"a block of phases needs room for one, not {size}")
         cursor = ffi.new("trochia_knot_cursor *")
-        while True:
-            block = np.empty(size, dtype=PHASE) if memory is None else memory(size)[:size]
-            made = lib.trochia_scurve_phases(
-                pointer(self._starts, "double *"), len(self._segments), self._knot(), len(self.knots), cursor,
-                pointer(block, "trochia_phase *"), size,
-            )  # fmt: skip
-            if not made:
-                return
-            yield block[:made]
+        yield from blocks(partial(lib.trochia_scurve_phases, *self._read(), cursor), size, memory)
 
     def states(self, times: NDArray[np.float64]) -> NDArray[np.void]:
         """Return the state at each time [s], clamped to the ends (times,) of PHASE."""
-        held = np.ascontiguousarray(times, dtype=np.float64)
-        out = np.empty(held.shape, dtype=PHASE)
-        lib.trochia_scurve_states(
-            pointer(self._starts, "double *"), len(self._segments), self._knot(), len(self.knots),
-            pointer(held, "double *"), held.size, pointer(out, "trochia_phase *"),
-        )  # fmt: skip
-        return out
+        return states(partial(lib.trochia_scurve_states, *self._read()), times)
 
     def move_times(self, moves: int) -> NDArray[np.float64]:
         """Return the time each of the program's moves takes (moves,) [s]; a blend counts to the move it enters."""

@@ -5,12 +5,14 @@ In: segments and coefficients, limits, knots of rows that have any, rests.  Out:
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trochia.kernels.layout import PHASE, SEGMENT, dtype_of, ffi, lib, pointer
+from trochia.kernels.layout import SEGMENT, dtype_of, ffi, lib, pointer
 from trochia.kernels.limits import limits_struct, rising_rests
+from trochia.kernels.phases import blocks, states
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -81,25 +83,14 @@ class Falling:
         if size < 1:
             raise ValueError(f"a block of phases needs room for one, not {size}")
         cursor = ffi.new("trochia_phase_cursor *")
-        while True:
-            block = np.empty(_ROOM, dtype=PHASE) if memory is None else memory(_ROOM)[:_ROOM]
-            made = lib.trochia_torque_phases(
-                self._task, self._piece(), len(self.pieces), cursor, pointer(block, "trochia_phase *"), _ROOM
-            )
-            if not made:
-                return
-            for first in range(0, made, size):
-                yield block[first : min(first + size, made)]
+        fill = partial(lib.trochia_torque_phases, self._task, self._piece(), len(self.pieces), cursor)
+        for block in blocks(fill, _ROOM, memory):
+            for first in range(0, len(block), size):
+                yield block[first : first + size]
 
     def states(self, times: NDArray[np.float64]) -> NDArray[np.void]:
         """Return the state at each time [s], clamped to the ends (times,) of PHASE."""
-        held = np.ascontiguousarray(times, dtype=np.float64)
-        out = np.empty(held.shape, dtype=PHASE)
-        lib.trochia_torque_states(
-            self._task, self._piece(), len(self.pieces), pointer(held, "double *"), held.size,
-            pointer(out, "trochia_phase *"),
-        )  # fmt: skip
-        return out
+        return states(partial(lib.trochia_torque_states, self._task, self._piece(), len(self.pieces)), times)
 
 
 def _falls(knots: Mapping[int, NDArray[np.float64]], rows: int) -> NDArray[np.void]:
