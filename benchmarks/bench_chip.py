@@ -3,9 +3,9 @@
     python benchmarks/bench_chip.py                      # hatch, contour, a finishing pass of 20,000 segments
     python benchmarks/bench_chip.py FILE MACHINE BAUD    # one program
 
-Out: whether it came to its end, steps counted by the board against the plan's, time against the plan's, tick segments and moves a
-second, how often and how far the board lowered its rate because its queue was low, in feeds and in rapids.  All by the
-chip's own time, so nothing depends on the computer.
+Out: whether it came to its end, steps counted by the board against the plan's, time against the plan's, tick segments
+and moves a second, how often and how far the board lowered its rate because its queue was low, in feeds and in rapids.
+All by the chip's own time, so nothing depends on the computer.
 """
 
 from __future__ import annotations
@@ -98,18 +98,21 @@ def run(job: Job) -> str:
     wanted = np.round((end - start) * steps_per_unit(machine, BOARDS[BOARD].motors)[: len(end)])
     off = np.abs((moves.status["position"].astype(np.int64) - before)[: len(end)] - wanted).max()
     runtime.close()
-    rates = [
+    feeds, rapids = (
         f"{100 * len(low[kind]) * PERIOD / taken:.1f} % of the time, to {min(low[kind]):.2f}" for kind in (False, True)
-    ]
-    alarms = ", ".join(alarm.message for alarm in status.alarms) or status.state
-    return (f"| {job.name} | {job.baud:,} | {alarms} | {plan.time_s:.1f} | {taken:.1f} | {len(program.moves) / taken:,.0f} "
-            f"| {spans / taken:,.0f} | {rates[0]} | {rates[1]} | {off:.0f} |")  # fmt: skip
+    )
+    ended = ", ".join(alarm.message for alarm in status.alarms) or status.state
+    return (
+        f"| {job.name} | {job.baud:,} | {ended} | {plan.time_s:.1f} | {taken:.1f} | {len(program.moves) / taken:,.0f} "
+        f"| {spans / taken:,.0f} | {feeds} | {rapids} | {off:.0f} |"
+    )
 
 
 def main() -> None:
     """Run what is asked for."""
     print(
-        "| program | baud | ended | plan [s] | taken [s] | moves/s | tick segments/s | slower in feeds | slower in rapids | steps off |"
+        "| program | baud | ended | plan [s] | taken [s] | moves/s | tick segments/s "
+        "| slower in feeds | slower in rapids | steps off |"
     )
     print("|---|---|---|---|---|---|---|---|---|---|")
     if len(sys.argv) > 3:
