@@ -142,22 +142,25 @@ def test_jogs_an_abort_an_output_and_the_emergency_stop(place: Place) -> None:
     place.until(lambda now: now.io["lamp"] == 1.0)
     with pytest.raises(Refused, match="inputs of a real machine cannot be set"):
         place.ok(c.SetInput(name="lamp", value=1.0))
-    place.ok(c.JogTo(position={"X": 0.0}))
-    place.until(lambda now: now.axes[0].velocity < -5.0)
+    place.ok(c.JogTo(position={"X": 140.0}))  # far enough for orders that come late
+    place.until(lambda now: now.axes[0].velocity > 5.0)
     place.ok(c.Abort())
     status = place.until("idle")
-    assert status.axes[0].commanded > 0.0
-    place.ok(c.Mdi(text="G0 X30"))
-    place.until(lambda now: now.axes[0].velocity > 5.0)
+    assert status.axes[0].commanded < 139.0
+    place.ok(c.Mdi(text="G0 X0"))
+    place.until(lambda now: now.axes[0].velocity < -5.0)
     place.client.stop()
     status = place.until("estop")
     assert not status.axes[0].trusted
+    last = time.monotonic() + PATIENCE
+    while place.runtime.backend.status["enabled"]:  # type: ignore[attr-defined] # the order is on its way to the board
+        assert time.monotonic() < last
+        time.sleep(0.01)
     made = place.edges("X").size
     end = place.board.board.at + 0.3
     while place.board.board.at < end:
         time.sleep(0.01)
     assert place.edges("X").size == made
-    assert not place.runtime.backend.status["enabled"]  # type: ignore[attr-defined]
 
 
 def test_a_cable_that_is_pulled_is_an_alarm_and_goes_on_when_it_is_back(place: Place) -> None:
