@@ -63,7 +63,8 @@ def grbl(
     runtime = Runtime(moves, journal=journal, work=reading.work, reading=reading, now=clock())
     end_codes = attach(runtime, machine, machine_name)
     over = threading.Event()
-    signal.signal(signal.SIGTERM, lambda _signal, _frame: over.set())
+    # as Ctrl-C: an event set from a handler would wait for the lock that the very wait it interrupts may hold
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     runtime.start(clock)
     click.echo(f"{machine.name} ({moves.title}) speaks GRBL 1.1 at {door.name} (Ctrl-C ends)")
     try:
