@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trochia.analysis.problems import Problem, Severity, from_error
-from trochia.backends.avr.ahead import CLOCK, spans_ahead
+from trochia.backends.avr.ahead import spans_ahead
 from trochia.backends.avr.load import Load
 from trochia.errors import ConfigError, LimitError
+from trochia.pulses.steps import CLOCK
 
 if TYPE_CHECKING:
     from trochia.analysis.plan import Plan

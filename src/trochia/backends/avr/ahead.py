@@ -13,6 +13,7 @@ from trochia.backends.avr.spans import LONGEST, SpanMaker
 from trochia.backends.avr.wiring import BOARDS, steps_per_unit
 from trochia.backends.queue import Queue
 from trochia.backends.segments import sampled
+from trochia.pulses.steps import CLOCK
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
     from trochia.machine.machine import Machine
     from trochia.planner import Trajectory
 
-CLOCK = 16_000_000  #: ticks a second
 ROW = 0.004  #: longest time of a row [s]
 SHORTEST = 1e-6  #: rows that are shorter belong to the one before [s]
 PIECE = 2048  #: rows taken at once

@@ -14,11 +14,10 @@ import numpy as np
 
 from trochia.backends.avr.supply import Supply
 from trochia.kernels.link import PART, PIXELS, SLOT, SPAN
+from trochia.pulses.steps import CLOCK
 
 if TYPE_CHECKING:
     from trochia.backends.avr.spans import Span
-
-CLOCK = 16_000_000  #: ticks a second
 
 
 class Cost(NamedTuple):

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from trochia.kernels.link import AT_REST, FULL_RATE, SLICE, SPAN
+from trochia.pulses.steps import CLOCK
 
 if TYPE_CHECKING:
     from trochia.backends.avr.spans import Span
 
-CLOCK = 16_000_000  #: ticks a second
 QUEUES = {"uno-stepdir": 600, "mega-stepdir": 1536, "uno-l293d": 512}  #: bytes
 FRAMED = 6  #: bytes of a frame beside its payload
 SHARE = 0.85  #: of the line that spans can have
