@@ -43,6 +43,7 @@ HEADERS = [
     "host/twin.h",
     "host/stepper.h",
     "host/drive.h",
+    "host/reluctance.h",
     "host/encoder.h",
     "host/servo.h",
     "shared/pid.h",

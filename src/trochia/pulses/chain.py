@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from trochia.errors import ConfigError
+from trochia.units import did_you_mean
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -76,6 +77,8 @@ class ShiftRegister:
     state: int = field(init=False, default=0)
 
     def __post_init__(self) -> None:
+        if self.phases < 2:
+            raise ConfigError(f"a register has at least 2 phases, not {self.phases}")
         if not self.rows or any(not 0 < row < 1 << self.phases for row in self.rows):
             raise ConfigError(
                 f"each row of a register of {self.phases} phases has some of its bits set, not {self.rows}"
@@ -93,6 +96,26 @@ class ShiftRegister:
         self.state = (self.state + direction) % len(self.rows)
         word = self.rows[self.state]
         return tuple(bool(word >> (self.phases - 1 - phase) & 1) for phase in range(self.phases))
+
+
+@dataclass(slots=True)
+class SoftwareDistributor:
+    """A counter and a table in the computer's memory, in place of a ring or a register.
+
+    ``rows`` (steps, phases) say which phases are on, one electrical turn.
+    """
+
+    rows: NDArray[np.bool_]
+    state: int = field(init=False, default=0)
+
+    def __post_init__(self) -> None:
+        if self.rows.ndim != 2 or not len(self.rows) or self.rows.shape[1] < 2:
+            raise ConfigError(f"a table has rows of at least 2 phases, not the shape {self.rows.shape}")
+
+    def step(self, direction: int) -> tuple[bool, ...]:
+        """Take a pulse and return which phases are on (phases,)."""
+        self.state = (self.state + direction) % len(self.rows)
+        return tuple(bool(on) for on in self.rows[self.state])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -142,6 +165,60 @@ class DigitalFilter:
         if self.acceleration is None or rate < self.start:
             return self.start if self.acceleration is not None else self.top
         return math.sqrt(rate * rate + 2.0 * self.acceleration(rate))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CommandChain:
+    """Who shapes the ramp, and who distributes the phases.
+
+    Attributes
+    ----------
+    distributor
+        ``RingCounter`` or ``ShiftRegister`` where hardware does it, ``SoftwareDistributor`` where the computer does.
+    filter
+        The digital filter that shapes the ramp; None where the computer's train is calibrated already.
+    """
+
+    distributor: Distributor
+    filter: DigitalFilter | None = None
+
+    def commanded(self, times: ArrayLike, directions: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+        """Return when the pulses reach the motor (pulses,) [s], and which phases are on after each (pulses, phases).
+
+        Raises
+        ------
+        ConfigError
+            For pulses out of order, or without a direction each.
+        """
+        came = np.asarray(times, np.float64)
+        left = came if self.filter is None else self.filter.spaced(came, directions)
+        return left, distributed(self.distributor, directions)
+
+
+#: mode of excitation -> the distributor of m phases that makes it
+DISTRIBUTORS: dict[str, Callable[[int], RingCounter | ShiftRegister]] = {
+    "one-phase": RingCounter,
+    "two-phase": lambda phases: RingCounter(phases, on=2),
+    "half-step": ShiftRegister.half_steps,
+}
+
+
+def phase_table(mode: str, phases: int) -> NDArray[np.bool_]:
+    """Return which of m phases are on through an electrical turn (steps, phases), from the distributor's rest on.
+
+    One-phase and two-phase have m steps a turn, half-step 2m.
+
+    Raises
+    ------
+    ConfigError
+        For a mode that no distributor makes, or phases it cannot have.
+    """
+    if mode not in DISTRIBUTORS:
+        raise ConfigError(f"no distributor makes {mode!r}; known are {', '.join(DISTRIBUTORS)}",
+                          hint=did_you_mean(mode, DISTRIBUTORS))  # fmt: skip
+    made = DISTRIBUTORS[mode](phases)
+    steps = len(made.rows) if isinstance(made, ShiftRegister) else phases
+    return np.roll(distributed(made, np.ones(steps)), 1, axis=0)  # the last pulse is back at the rest
 
 
 def distributed(distributor: Distributor, directions: ArrayLike) -> NDArray[np.bool_]:

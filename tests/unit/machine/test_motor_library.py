@@ -121,7 +121,9 @@ def test_reluctance_rotor_follows_the_nearest_tooth():
     assert moved == [stepper.direction * stepper.step_angle_deg] * 4
 
 
-@pytest.mark.parametrize(("poles", "teeth", "per_phase"), [(8, 7, 2), (8, 6, 3), (8, 6, 4), (0, 6, 2)])
+@pytest.mark.parametrize(
+    ("poles", "teeth", "per_phase"), [(8, 7, 2), (8, 6, 3), (8, 6, 4), (0, 6, 2), (4, 6, 2), (4, 2, 2)]
+)
 def test_uneven_reluctance_geometry_is_refused(poles: int, teeth: int, per_phase: int):
     with pytest.raises(ConfigError):
         ReluctanceStepper(poles=poles, teeth=teeth, poles_per_phase=per_phase)

@@ -10,7 +10,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from trochia.errors import ConfigError
-from trochia.pulses.chain import DigitalFilter, RingCounter, ShiftRegister, distributed
+from trochia.pulses.chain import (
+    DISTRIBUTORS,
+    CommandChain,
+    DigitalFilter,
+    RingCounter,
+    ShiftRegister,
+    SoftwareDistributor,
+    distributed,
+    phase_table,
+)
 from trochia.pulses.excitation import excitation
 
 
@@ -32,6 +41,34 @@ def test_a_distributor_of_four_phases_is_the_table_of_that_excitation(made, name
     made.state = first
     got = levels(distributed(made, [sense] * 20))
     np.testing.assert_array_equal(got, excitation(name).sequence(20 * sense, first))
+
+
+@pytest.mark.parametrize("mode", DISTRIBUTORS)
+@pytest.mark.parametrize("phases", [3, 4, 5, 8])
+def test_a_table_of_phases_turns_the_field_by_even_steps(mode: str, phases: int) -> None:
+    """One phase, two, or both in turn: the sum of the phases' directions goes round evenly, m or 2m steps a turn."""
+    table = phase_table(mode, phases)
+    assert len(table) == (2 * phases if mode == "half-step" else phases)
+    assert set(table.sum(axis=1)) == {"one-phase": {1}, "two-phase": {2}, "half-step": {1, 2}}[mode]
+    assert table[0, 0]
+    field = np.unwrap(np.angle(table @ np.exp(2j * np.pi / phases * np.arange(phases))))
+    np.testing.assert_allclose(np.diff(field), 2 * np.pi / len(table), atol=1e-12)
+
+
+@pytest.mark.parametrize("mode", DISTRIBUTORS)
+@pytest.mark.parametrize("filtered", [True, False])
+def test_hardware_and_software_distribute_alike_whoever_shapes_the_ramp(mode: str, *, filtered: bool) -> None:
+    """The four splits of the work: only the filter changes instants, and no distributor changes the phases."""
+    shaper = DigitalFilter(top=1000.0, start=200.0, acceleration=lambda _: 4000.0) if filtered else None
+    times, signs = np.repeat([0.0, 0.3], [50, 30]), np.repeat([1, -1], [50, 30])
+    wired, programmed = (
+        CommandChain(distributor=made, filter=shaper)
+        for made in (DISTRIBUTORS[mode](4), SoftwareDistributor(phase_table(mode, 4)))
+    )
+    (left, hardware), (same, software) = wired.commanded(times, signs), programmed.commanded(times, signs)
+    np.testing.assert_array_equal(hardware, software)
+    np.testing.assert_array_equal(left, same)
+    assert np.array_equal(left, times) != filtered
 
 
 @given(phases=st.integers(2, 8), moves=st.lists(st.sampled_from([1, -1]), max_size=60))
@@ -84,6 +121,9 @@ def test_without_a_characteristic_only_the_distance_is_kept() -> None:
         (lambda: RingCounter(1), "at least 2"),
         (lambda: RingCounter(4, on=4), "fewer on"),
         (lambda: ShiftRegister(4, (0, 1)), "bits set"),
+        (lambda: ShiftRegister(1, (1,)), "at least 2"),
+        (lambda: SoftwareDistributor(np.ones((0, 4), bool)), "at least 2 phases"),
+        (lambda: phase_table("half-steps", 4), "did you mean half-step"),
         (lambda: DigitalFilter(top=100.0, start=200.0), "not above the top"),
         (lambda: DigitalFilter(top=100.0, start=50.0).spaced([1.0, 0.0], [1, 1]), "in order"),
     ],

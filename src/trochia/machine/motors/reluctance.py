@@ -42,6 +42,12 @@ class ReluctanceStepper:
                 f"under {self.poles} poles, not {self.teeth}",
                 key="teeth",
             )
+        if self.phases < 3:
+            raise ConfigError(
+                f"must be at least {3 * self.poles_per_phase} for three phases, not {self.poles}: with two, forwards "
+                "and backwards are the same order",
+                key="poles",
+            )
 
     @property
     def phases(self) -> int:

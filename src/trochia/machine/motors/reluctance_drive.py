@@ -1,13 +1,17 @@
 """The variable reluctance stepper at work: equations of any number of phases, and a run through its steps.
 
-In: a motor's geometry and its electrical values, the phase that is on.  Out: torque, derivatives, the way of the rotor.
+In: a motor's geometry and its electrical values, the phases that are on.  Out: torque, derivatives, the way of the
+rotor, closed forms of what it holds and how it swings.
 
     v = R i + L di/dt + i w dL/dx        L(x) = L0 + L1 cos(N x - s 2 pi k/m)        k = 0 … m - 1
     T = ½ Σ i² dL/dx                     J dw/dt = T - B w - dry friction - load
 
 Symbols: N rotor teeth, m phases, s +1 where the rotor follows the order of excitation and -1 where it turns against it
 (fewer teeth than poles), L0 and L1 mean and half the difference of inductance in line and out of it.  The iron does not
-saturate and the phases are not coupled (Acarnley).  The current's sign does not matter, so drivers are unipolar.
+saturate and the phases are not coupled (Acarnley).  The current's sign does not matter, so switches are unipolar: one
+transistor a phase, and a diode that leads the current on when it opens.  A current therefore never falls below zero.
+
+``core/host/reluctance.c`` runs the same equations; ``backends/reluctance_twin.py`` takes step pulses.
 """
 
 from __future__ import annotations
@@ -29,6 +33,43 @@ if TYPE_CHECKING:
     from trochia.machine.motors.shaft import ShaftLoad
 
     Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Switches:
+    """Unipolar switches, one a phase, and what becomes of the current when one opens.
+
+    Attributes
+    ----------
+    supply
+        Across a phase that is on, the switch's drop taken off [V].
+    freewheel
+        What the current of an opened phase runs against [V]: a diode's 0.7 V lets it fall slowly, a Zener diode or the
+        supply (two transistors and two diodes a phase) quickly.  The supply where None.
+    series
+        Resistor in the diode's path, which takes the winding's energy [ohm].
+    """
+
+    supply: float
+    freewheel: float | None = None
+    series: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not 0 < self.supply < math.inf:
+            raise ConfigError(f"must be above zero, not {self.supply:g} V", key="supply")
+        for name in ("freewheel", "series"):
+            value = getattr(self, name)
+            if value is not None and not 0 <= value < math.inf:
+                raise ConfigError(f"must be zero or more, not {value:g}: it takes energy, it gives none", key=name)
+
+    @property
+    def against(self) -> float:
+        """What the current of an opened phase runs against [V]."""
+        return self.supply if self.freewheel is None else self.freewheel
+
+    def voltages(self, currents: Array, on: NDArray[np.bool_]) -> Array:
+        """Return what the phases see (..., phases) [V], by their currents and whether they are on (..., phases)."""
+        return np.where(on, self.supply, -self.against - self.series * currents)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -84,43 +125,72 @@ class ReluctanceDrive:
         """Return the torque on the rotor (...) [N·m] for currents (..., phases)."""
         return 0.5 * (currents**2 * self.slope(theta)).sum(axis=-1)
 
-    def holding_torque(self, current: float) -> float:
-        """Return the greatest torque of one phase [N·m]: N (L_aligned - L_unaligned) I²/4."""
-        return self.geometry.teeth * (self.aligned - self.unaligned) * current * current / 4
+    def holding_torque(self, current: float, on: int = 1) -> float:
+        """Return the greatest torque that ``on`` neighbouring phases hold, each with this current [N·m].
+
+        One phase: ½ I² times the greatest dL/dx, N (L_aligned - L_unaligned) I²/4.  Several are sines 2π/m apart, whose
+        sum is sin(π on/m)/sin(π/m) of one.
+
+        Raises
+        ------
+        ConfigError
+            When the motor does not have so many phases, or has no more.
+        """
+        phases = self.geometry.phases
+        if not 1 <= on < phases:
+            raise ConfigError(f"between 1 and {phases - 1} of {phases} phases can be on, not {on}")
+        one = self.geometry.teeth * (self.aligned - self.unaligned) * current * current / 4
+        return one * math.sin(math.pi * on / phases) / math.sin(math.pi / phases)
+
+    def resonance(self, current: float, load: ShaftLoad = FREE, on: int = 1) -> float:
+        """Return the frequency of small swings about the stable point [Hz]: √(N T/J)/2π, T the holding torque."""
+        stiffness = self.geometry.teeth * self.holding_torque(current, on)
+        return math.sqrt(stiffness / (self.inertia + load.inertia)) / math.tau
 
     def derivative(self, state: Array, voltages: Array, load: ShaftLoad = FREE) -> Array:
-        """Return d/dt of states (..., phases + 2) under phase voltages (..., phases)."""
-        currents, theta, omega = state[..., :-2], state[..., -2], state[..., -1]
+        """Return d/dt of states (..., phases + 2) under phase voltages (..., phases); a current at zero only rises."""
+        currents, theta, omega = np.maximum(state[..., :-2], 0.0), state[..., -2], state[..., -1]
         induced = currents * omega[..., None] * self.slope(theta)
         electric = (voltages - self.resistance * currents - induced) / self.inductance(theta)
+        electric = np.where(currents > 0, electric, np.maximum(electric, 0.0))
         drag = (self.viscous + load.viscous) * omega + dry_friction(self.friction + load.friction, omega)
         net = self.torque(currents, theta) - drag - load.constant
         return np.concatenate([electric, np.stack([omega, net / (self.inertia + load.inertia)], axis=-1)], axis=-1)
 
     def run(
-        self, phase: Array, voltage: float, *, step: float, load: ShaftLoad = FREE, state: Array | None = None
+        self,
+        on: NDArray[np.bool_],
+        switches: Switches,
+        *,
+        step: float,
+        load: ShaftLoad = FREE,
+        state: Array | None = None,
     ) -> Array:
         """Return the states after each time step (steps, phases + 2), Runge-Kutta of fourth order.
 
+        The plain statement of what the C core does, to read and to test against; for anything long take the twin.
+
         Parameters
         ----------
-        phase
-            Number of the phase that is on in each step (steps,), below zero none; a phase that is off is driven with
-            minus the voltage until its current is gone, as by diodes to the supply.
+        on
+            Which phases are on in each step (steps, phases).
+        step
+            Time step [s].
         state
             To begin with; at rest in line with phase 0 where None.
         """
         phases = self.geometry.phases
         y = np.zeros(phases + 2) if state is None else np.array(state, np.float64)
-        out = np.empty((len(phase), phases + 2))
-        for n, on in enumerate(np.asarray(phase).astype(int).tolist()):
-            volts = np.where(y[:phases] > 0, -voltage, 0.0)
-            if on >= 0:
-                volts[on % phases] = voltage
-            k1 = self.derivative(y, volts, load)
-            k2 = self.derivative(y + step / 2 * k1, volts, load)
-            k3 = self.derivative(y + step / 2 * k2, volts, load)
-            k4 = self.derivative(y + step * k3, volts, load)
+        out = np.empty((len(on), phases + 2))
+
+        def rate(at: Array, row: NDArray[np.bool_]) -> Array:
+            return self.derivative(at, switches.voltages(np.maximum(at[:phases], 0.0), row), load)
+
+        for n, row in enumerate(np.asarray(on, np.bool_)):
+            k1 = rate(y, row)
+            k2 = rate(y + step / 2 * k1, row)
+            k3 = rate(y + step / 2 * k2, row)
+            k4 = rate(y + step * k3, row)
             y = y + step / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
             y[:phases] = np.maximum(y[:phases], 0.0)
             out[n] = y
