@@ -5,18 +5,7 @@
 #ifndef TROCHIA_HOST_CHIP_H
 #define TROCHIA_HOST_CHIP_H
 
-#include <stdint.h>
-
-/* What happened; as in firmware/sim/chip.h. */
-typedef struct {
-    uint64_t cycle;
-    uint8_t kind, unit, line, reserved;
-    uint32_t value;
-} event;
-
-enum event_kind { EVENT_PIN = 1, EVENT_BYTE = 2 };
-
-void record(uint64_t cycle, uint8_t kind, uint8_t unit, uint8_t line, uint32_t value);
+#include "../sim/requests.h"
 
 extern uint64_t cycle; /* since reset */
 

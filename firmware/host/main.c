@@ -1,49 +1,13 @@
 /* Obeys the requests of firmware/sim/main.c, from the same caller: R, B, P and M (of the registers tests look at). */
 #include "chip.h"
 
-#include <stdbool.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-
-enum { LONGEST = 1 << 20, RUNS = 1 };
-
-typedef struct {
-    uint64_t cycle, asleep;
-    uint32_t state, interrupts, unread, events;
-} status;
-
-static event *events;
-static uint32_t event_count, event_room;
-
-void record(uint64_t at, uint8_t kind, uint8_t unit, uint8_t line, uint32_t value) {
-    if (event_count == event_room) {
-        event_room = event_room ? 2 * event_room : 4096;
-        events = realloc(events, event_room * sizeof *events);
-        if (!events)
-            abort();
-    }
-    events[event_count++] = (event){.cycle = at, .kind = kind, .unit = unit, .line = line, .value = value};
-}
-
-static void answer(const void *bytes, uint32_t size) {
-    fwrite(&size, sizeof size, 1, stdout);
-    if (size)
-        fwrite(bytes, 1, size, stdout);
-    fflush(stdout);
-}
 
 static void run(const uint8_t *request) {
     uint64_t until;
     memcpy(&until, request, sizeof until);
     chip_run(until);
-    status now = {.cycle = cycle, .state = RUNS, .unread = chip_unread(), .events = event_count};
-    uint32_t size = (uint32_t)(sizeof now + event_count * sizeof *events);
-    fwrite(&size, sizeof size, 1, stdout);
-    fwrite(&now, sizeof now, 1, stdout);
-    fwrite(events, sizeof *events, event_count, stdout);
-    fflush(stdout);
-    event_count = 0;
+    answer_status((status){.cycle = cycle, .state = RUNS, .unread = chip_unread()});
 }
 
 static void tell_registers(const uint8_t *request) {
@@ -78,13 +42,7 @@ static bool obey(uint8_t letter, const uint8_t *request, uint32_t size) {
 }
 
 int main(void) {
-    static uint8_t request[LONGEST + 8];
-    uint8_t letter;
-    uint32_t size;
     chip_reset();
-    while (fread(&letter, 1, 1, stdin) == 1 && fread(&size, sizeof size, 1, stdin) == 1 && size <= LONGEST) {
-        if ((size && fread(request, 1, size, stdin) != size) || !obey(letter, request, size))
-            break;
-    }
+    obey_requests(obey);
     return 0;
 }

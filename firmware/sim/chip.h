@@ -6,8 +6,7 @@
 #ifndef TROCHIA_SIM_CHIP_H
 #define TROCHIA_SIM_CHIP_H
 
-#include <stdbool.h>
-#include <stdint.h>
+#include "requests.h"
 
 #include <simavr/avr_ioport.h>
 #include <simavr/avr_timer.h>
@@ -15,23 +14,6 @@
 #include <simavr/sim_avr.h>
 
 enum { TIMERS = 6, MATCHES = 3, FIFO = 2 };
-
-/* What happened, as the caller gets it. */
-typedef struct {
-    uint64_t cycle;
-    uint8_t kind; /* EVENT_... */
-    uint8_t unit; /* port letter, serial port's or timer's digit */
-    uint8_t line; /* pin of the port, channel of the timer */
-    uint8_t reserved;
-    uint32_t value;
-} event;
-
-enum event_kind {
-    EVENT_PIN = 1,  /* an output's level */
-    EVENT_BYTE = 2, /* a byte has left the serial port, with its stop bit */
-    EVENT_PWM = 3,  /* a timer's channel drives its pin: value is its compare value, and its top in the upper half */
-    EVENT_LOST = 4  /* a received byte was lost: the receiver held two already (value 0) or was off (value 1) */
-};
 
 typedef struct {
     uint8_t *bytes;
@@ -60,9 +42,6 @@ typedef struct {
     uint32_t match[MATCHES];
     bool pwm, wraps_at_top;
 } clock_unit;
-
-/* Adds to what the caller gets. */
-void record(uint64_t cycle, uint8_t kind, uint8_t unit, uint8_t line, uint32_t value);
 
 /* Replaces libsimavr's model of a serial port. */
 void serial_take(serial *unit, avr_t *avr, avr_uart_t *port);

@@ -1,7 +1,6 @@
 /* Runs an image: `chip IMAGE.elf MCU HZ`, obeying requests on standard input and answering on standard output.
  *
- * A request is a letter, the length of what follows (32 bits) and that; the answer's length (32 bits) and the answer.
- * Little-endian throughout.
+ * The requests (their form: requests.h):
  *
  *   R cycle(64)                    go on until the cycle; answer: status, then what happened as `event`s
  *   B cycle(64) bytes              bytes to the serial port 0, their line idle until the cycle
@@ -30,21 +29,11 @@ enum {
     ENTRY = 4,
     WAKE = 4,
     RETI = 4,
-    LONGEST = 1 << 24,
     PORTS = 12,
     VECTORS = 64,
     EXTERNAL = EXTINT_COUNT,
     SUPPLY = 5000 /* mV */
 };
-
-typedef struct {
-    uint64_t cycle;
-    uint64_t asleep;     /* cycles spent asleep */
-    uint32_t state;      /* 1: runs, 2: sleeps, 3: stopped for ever (sleeps without interrupts), 4: crashed */
-    uint32_t interrupts; /* taken */
-    uint32_t unread;     /* bytes that have not arrived yet */
-    uint32_t events;
-} status;
 
 typedef struct {
     uint64_t taken, cycles, worst;
@@ -64,22 +53,10 @@ static avr_t *chip;
 static serial serial0;
 static clock_unit clocks[TIMERS];
 static pin_watch pins[PORTS][8];
-static event *events;
-static uint32_t event_count, event_room;
 static status now;
 static vector_cost costs[VECTORS];
 static running stack[VECTORS];
 static int depth;
-
-void record(uint64_t cycle, uint8_t kind, uint8_t unit, uint8_t line, uint32_t value) {
-    if (event_count == event_room) {
-        event_room = event_room ? 2 * event_room : 4096;
-        events = realloc(events, event_room * sizeof *events);
-        if (!events)
-            abort();
-    }
-    events[event_count++] = (event){.cycle = cycle, .kind = kind, .unit = unit, .line = line, .value = value};
-}
 
 static void pin_changed(avr_irq_t *irq, uint32_t value, void *param) {
     (void)irq;
@@ -177,27 +154,17 @@ static void go_on(uint64_t until) {
     avr_cycle_timer_cancel(chip, stop_here, NULL);
 }
 
-static void answer(const void *bytes, uint32_t size) {
-    fwrite(&size, sizeof size, 1, stdout);
-    if (size)
-        fwrite(bytes, 1, size, stdout);
-    fflush(stdout);
-}
-
 static void answer_run(const uint8_t *request) {
     uint64_t until;
     memcpy(&until, request, sizeof until);
     go_on(until);
     now.cycle = chip->cycle;
-    now.state = chip->state == cpu_Running ? 1 : chip->state == cpu_Sleeping ? 2 : chip->state == cpu_Done ? 3 : 4;
+    now.state = chip->state == cpu_Running    ? RUNS
+                : chip->state == cpu_Sleeping ? SLEEPS
+                : chip->state == cpu_Done     ? STOPPED
+                                              : CRASHED;
     now.unread = serial_left(&serial0);
-    now.events = event_count;
-    uint32_t size = (uint32_t)(sizeof now + event_count * sizeof *events);
-    fwrite(&size, sizeof size, 1, stdout);
-    fwrite(&now, sizeof now, 1, stdout);
-    fwrite(events, sizeof *events, event_count, stdout);
-    fflush(stdout);
-    event_count = 0;
+    answer_status(now);
 }
 
 static void set_pin(uint8_t port, uint8_t pin, uint8_t level) {
@@ -252,17 +219,6 @@ static bool obey(uint8_t letter, const uint8_t *request, uint32_t size) {
     return true;
 }
 
-static bool listen(void) {
-    static uint8_t request[LONGEST + 8];
-    uint8_t letter;
-    uint32_t size;
-    if (fread(&letter, 1, 1, stdin) != 1 || fread(&size, sizeof size, 1, stdin) != 1 || size > LONGEST)
-        return false;
-    if (size && fread(request, 1, size, stdin) != size)
-        return false;
-    return obey(letter, request, size);
-}
-
 /* libsimavr's messages go where they do not disturb the answers. */
 static void log_to_stderr(avr_t *avr, const int level, const char *format, va_list arguments) {
     if (!avr || avr->log >= level)
@@ -292,7 +248,6 @@ int main(int count, char **arguments) {
     for (uint8_t i = 0; i < EXTERNAL; i++) /* nobody uses them, and they would look at their pins cycle for cycle */
         avr_extint_set_strict_lvl_trig(chip, i, 0);
     avr_irq_register_notify(avr_get_interrupt_irq(chip, AVR_INT_ANY) + AVR_INT_IRQ_RUNNING, interrupt_ends, NULL);
-    while (listen())
-        ;
+    obey_requests(obey);
     return 0;
 }

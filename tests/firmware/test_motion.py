@@ -16,8 +16,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-_chip = sys.modules["chip_motion"]
-edges, stream = _chip.edges, _chip.stream
+edges = sys.modules["chip_motion"].edges
 CLOCK = 16e6
 US = 16  # cycles
 STEPS = ("D2", "D3", "D4", "B4")
@@ -43,7 +42,7 @@ def test_rates_without_a_missed_tick(talk: Callable[[str], Any], rates: list[flo
     """Status a hundred times a second, orders at 1,000,000 baud; `latest` in microseconds."""
     spans = steady(rates, round(0.25 * CLOCK / ticks), ticks=ticks, stride=100)
     told = talk("uno-stepdir")
-    status, wanted, events = stream(told, spans), executed(b"".join(spans)), told.events()
+    status, wanted, events = told.stream(spans), executed(b"".join(spans)), told.events()
     assert CAUSES[int(status["cause"])] == "no_cause"
     assert status["position"].tolist() == wanted.position.tolist()
     late: list[NDArray[np.int64]] = []
@@ -178,7 +177,7 @@ def test_steps_of_the_slice_in_which_the_beam_goes_out_are_no_later_than_others(
     spans = steady(rates, 8, ticks=1 << 17, stride=100, slew=3000, power=200, rest=False)
     told = talk("uno-stepdir")
     told.session.order("switch", bytes([255, 1, 0, 0]))
-    status, wanted, events = stream(told, spans), executed(b"".join(spans), brake=0), told.events()
+    status, wanted, events = told.stream(spans), executed(b"".join(spans), brake=0), told.events()
     assert CAUSES[int(status["cause"])] == "low"
     assert status["position"].tolist() == wanted.position.tolist()
     late: list[NDArray[np.int64]] = []

@@ -55,7 +55,7 @@ def test_pixels_come_at_their_ticks_while_motors_step(
     spans, due = raster(rates, hertz, pixels, round(0.2 * hertz / pixels))
     told = talk("uno-stepdir")
     told.session.order("switch", bytes([255, 1, 0, 0]))
-    status, wanted, events = motion.stream(told, spans), executed(b"".join(spans)), told.events()
+    status, wanted, events = told.stream(spans), executed(b"".join(spans)), told.events()
     assert CAUSES[int(status["cause"])] == "no_cause"
     assert status["position"].tolist() == wanted.position.tolist()
     late: list[NDArray[np.int64]] = []
