@@ -100,15 +100,7 @@ void trochia_servo_run(const trochia_plant *plant, const trochia_loop *loop, tro
         if (plant->encoder.watched && plant->encoder.clock > 0.0)
             speed = trochia_encoder_speed(&s.plant.encoder, plant->h) / plant->counts;
         s.command = command_of(loop, &s, wanted, measured, speed, injected != NULL ? injected[i] : 0.0);
-        const double row[7] = {measured,
-                               s.plant.motor,
-                               s.plant.load,
-                               speed,
-                               s.command,
-                               s.plant.current,
-                               plant->torque_constant * s.plant.current};
-        for (int c = 0; c < 7; c++)
-            out[c] = row[c];
+        trochia_plant_row(plant, &s.plant, measured, speed, s.command, out);
         const double force = disturbance != NULL ? disturbance[i] : 0.0;
         for (uint32_t n = 0; n < loop->steps; n++) {
             double u = s.command;

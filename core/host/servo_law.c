@@ -85,15 +85,7 @@ void trochia_law_run(const trochia_plant *plant, const trochia_law *law, trochia
             s.command = law->volts * thirty_seconds(&s, (int64_t)floor(wanted[i] * law->counts + 0.5), count);
             s.actual = count;
         }
-        const double row[7] = {measured,
-                               s.plant.motor,
-                               s.plant.load,
-                               speed,
-                               s.command,
-                               s.plant.current,
-                               plant->torque_constant * s.plant.current};
-        for (int c = 0; c < 7; c++)
-            out[c] = row[c];
+        trochia_plant_row(plant, &s.plant, measured, speed, s.command, out);
         const double force = disturbance != NULL ? disturbance[i] : 0.0;
         for (uint32_t n = 0; n < law->steps; n++)
             trochia_plant_step(plant, &k, &s.plant, s.command, force);

@@ -142,10 +142,7 @@ void trochia_plant_run(const trochia_plant *plant, trochia_plant_state *state, c
     trochia_plant_state s = *state;
     for (uint64_t i = 0; i < count; i++, out += 7) {
         const double speed = plant->on_load ? s.load_speed : s.motor_speed;
-        const double row[7] = {trochia_plant_measured(plant, &s), s.motor, s.load, speed, commands[i], s.current,
-                               plant->torque_constant * s.current};
-        for (int c = 0; c < 7; c++)
-            out[c] = row[c];
+        trochia_plant_row(plant, &s, trochia_plant_measured(plant, &s), speed, commands[i], out);
         for (uint32_t n = 0; n < steps; n++)
             trochia_plant_step(plant, &k, &s, commands[i], 0.0);
     }

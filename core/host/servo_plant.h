@@ -24,4 +24,16 @@ void trochia_plant_step(const trochia_plant *plant, const trochia_plant_constant
 /* What the encoder says. */
 double trochia_plant_measured(const trochia_plant *plant, const trochia_plant_state *s);
 
+/* A row of what the runs of servo.h write: measured position, motor, load, measured speed, command, current, force. */
+static inline void trochia_plant_row(const trochia_plant *plant, const trochia_plant_state *s, double measured,
+                                     double speed, double command, double *row) {
+    row[0] = measured;
+    row[1] = s->motor;
+    row[2] = s->load;
+    row[3] = speed;
+    row[4] = command;
+    row[5] = s->current;
+    row[6] = plant->torque_constant * s->current;
+}
+
 #endif
