@@ -15,10 +15,10 @@ from trochia.backends.switches import switches_of
 from trochia.controller.doings import OUTPUTS_OFF
 from trochia.controller.guards import stands_on
 from trochia.controller.homing import Home as Homing
-from trochia.controller.homing import squared
 from trochia.controller.job import Job
 from trochia.controller.jog import Jog
 from trochia.controller.readying import MDI
+from trochia.controller.search import squared
 from trochia.controller.starting import LEAST, begin, check_overrides, plan_here, run_from, start
 from trochia.controller.states import State
 from trochia.errors import LimitError, LocalProtocolError, OutOfTravelError
