@@ -8,7 +8,6 @@ samples and lost steps included.  The averaged model at 20 us does the same seco
 from __future__ import annotations
 
 import ctypes
-import math
 import subprocess
 import tempfile
 from pathlib import Path
@@ -17,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from harness import Case, report
-from trochia.backends.driven_stepper import DrivenStepper, Levels
+from trochia.backends.stepper_twin import MEAN, SWITCHED, Levels, StepperTwin
 from trochia.machine.drivers import Chopper, Fed, fed
 from trochia.machine.motors import ShaftLoad, motor
 
@@ -84,13 +83,13 @@ def plain_loop(folder: Path, made: Fed, chopper: Chopper) -> Callable[[], object
     return lambda: call(constants, table, rows, rate, ctypes.c_double(DT), ctypes.c_int64(STEPS))
 
 
-def ours(made: Fed, threshold: float) -> Callable[[], object]:
+def ours(made: Fed, levels: Levels) -> Callable[[], object]:
     """Return the twin's run of the same motion, in one of its levels."""
     rate = RATE * made.excitation.steps_per_full_step
     pulses = np.arange(1, int(SECONDS * rate)) / rate
 
     def run() -> int:
-        twin = DrivenStepper(made, LOAD, levels=Levels(threshold=threshold))
+        twin = StepperTwin(made, LOAD, levels=levels)
         twin.queue(pulses)
         return int(twin.run(SECONDS, every=50).lost_steps[-1])
 
@@ -107,8 +106,8 @@ def main() -> None:
             "us of motion",
             [
                 Case(name="plain C loop", call=plain, count=STEPS, reference=True),
-                Case(name="every switching, every 1 ms a sample", call=ours(made, 0.0), count=STEPS),
-                Case(name="on average, at 20 us (other equations)", call=ours(made, math.inf), count=STEPS),
+                Case(name="every switching, every 1 ms a sample", call=ours(made, SWITCHED), count=STEPS),
+                Case(name="on average, at 20 us (other equations)", call=ours(made, MEAN), count=STEPS),
             ],
         )
 

@@ -17,6 +17,7 @@ import numpy as np
 
 from harness import Case, report
 from trochia.backends.stepper_twin import STEP, StepperTwin
+from trochia.machine.drivers import HBridge, fed
 from trochia.machine.motors import HybridStepper, motor
 from trochia.pulses.excitation import Excitation, excitation
 
@@ -83,8 +84,10 @@ def ours(stepper: HybridStepper, mode: Excitation, every: int) -> Callable[[], o
     """Return the twin's run of the same motion."""
     pulses = np.arange(1, int(SECONDS * RATE * mode.steps_per_full_step)) / (RATE * mode.steps_per_full_step)
 
+    made = fed(stepper, HBridge(supply=VOLTS, drop=0.0, excitation=mode.name))
+
     def run() -> int:
-        twin = StepperTwin(stepper, mode, VOLTS)
+        twin = StepperTwin(made)
         twin.queue(pulses)
         return int(twin.run(SECONDS, every=every).lost_steps[-1])
 

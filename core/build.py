@@ -42,7 +42,6 @@ HEADERS = [
     "host/placement.h",
     "host/twin.h",
     "host/stepper.h",
-    "host/drive.h",
     "host/reluctance.h",
     "host/encoder.h",
     "host/servo.h",

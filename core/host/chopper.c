@@ -1,7 +1,8 @@
 #include <math.h>
 
-#include "host/drive.h"
-#include "host/drive_levels.h"
+#include "host/stepper.h"
+#include "host/stepper_equations.h"
+#include "host/stepper_levels.h"
 
 typedef struct {
     const trochia_driver *d;
@@ -47,63 +48,55 @@ static inline double step_current(double i, double v, double e, double left, dou
     return v * i < 0.0 && next * i < 0.0 ? 0.0 : next;
 }
 
-static inline double dry(double torque, double omega, double creep2) {
-    return torque > 0.0 ? torque * omega / sqrt(omega * omega + creep2) : 0.0;
-}
-
 /* Rotor, and the load behind its coupling, a step on under the currents. */
-static inline void step_shaft(const trochia_stepper *m, const trochia_coupling *k, trochia_drive_state *y, double s,
-                              double c, double dt) {
-    const double creep2 = m->creep * m->creep;
-    double torque = m->torque_constant * (y->current_b * c - y->current_a * s) -
-                    4.0 * m->detent * s * c * (1.0 - 2.0 * s * s) - m->viscous * y->omega - m->load -
-                    dry(m->friction, y->omega, creep2);
-    if (k->stiffness > 0.0) {
-        const double across = k->stiffness * (y->theta - y->load_theta) + k->damping * (y->omega - y->load_omega);
+static inline void step_shaft(const stepper_shaft *q, trochia_stepper_state *y, double s, double c, double dt) {
+    double torque = stepper_torque(q, y->current_a, y->current_b, s, c, y->omega);
+    if (q->stiffness > 0.0) {
+        const double across = stepper_coupling(q, y->theta, y->omega, y->load_theta, y->load_omega);
         torque -= across;
-        y->load_omega +=
-            dt / k->inertia * (across - k->viscous * y->load_omega - k->load - dry(k->friction, y->load_omega, creep2));
+        y->load_omega += dt * q->per_jl * stepper_behind(q, across, y->load_omega);
         y->load_theta += dt * y->load_omega;
     }
-    y->omega += dt / m->inertia * torque;
+    y->omega += dt * q->per_j * torque;
     y->theta += dt * y->omega;
-    if (!(k->stiffness > 0.0)) {
+    if (!(q->stiffness > 0.0)) {
         y->load_theta = y->theta;
         y->load_omega = y->omega;
     }
 }
 
 int64_t trochia_chopper_run(const trochia_stepper *motor, const trochia_driver *driver,
-                            const trochia_coupling *coupling, trochia_drive_state *state,
-                            const trochia_drive_input *input, double h, int64_t sub, int64_t ticks, int64_t every,
+                            const trochia_coupling *coupling, trochia_stepper_state *state,
+                            const trochia_stepper_input *input, double h, int64_t sub, int64_t ticks, int64_t every,
                             double *samples, int64_t *positions) {
     const double dt = h / (double)sub;
     const clockwork t = {driver, dt, 0.5 * dt, (1.0 - driver->fast) * driver->off_time + 0.5 * dt};
     const double left = exp(-dt * motor->resistance / motor->inductance);
     const double gain = (1.0 - left) / motor->resistance;
-    drive_levels levels = {0};
+    const stepper_shaft shaft = stepper_prepare(motor, coupling);
+    stepper_levels levels = {0};
     int64_t row = 0, until = every;
-    trochia_drive_state y = *state;
-    drive_set(&levels, driver, input, y.position);
+    trochia_stepper_state y = *state;
+    stepper_set(&levels, driver, input, y.position);
     for (int64_t i = 0; i < ticks; i++, y.tick++) {
         const double begin = (double)y.tick * h;
-        drive_rest(&levels, driver, input, &y, begin);
+        stepper_rest(&levels, driver, input, &y, begin);
         for (int64_t j = 0; j < sub; j++) {
             while (levels.taken < input->pulses && input->times[levels.taken] < begin + (double)(j + 1) * dt) {
-                drive_pulse(&levels, driver, input, &y);
+                stepper_pulse(&levels, driver, input, &y);
             }
-            const double s = sin(motor->teeth * y.theta);
-            const double c = cos(motor->teeth * y.theta);
-            const double ke = motor->torque_constant * y.omega;
+            const double s = sin(shaft.p * y.theta);
+            const double c = cos(shaft.p * y.theta);
+            const double ke = shaft.k * y.omega;
             const double va = switch_phase(&t, &y.switch_a, levels.a, y.current_a);
             const double vb = switch_phase(&t, &y.switch_b, levels.b, y.current_b);
             y.current_a = step_current(y.current_a, va, -ke * s, left, gain);
             y.current_b = step_current(y.current_b, vb, ke * c, left, gain);
-            step_shaft(motor, coupling, &y, s, c, dt);
+            step_shaft(&shaft, &y, s, c, dt);
         }
         if (--until == 0) {
             until = every;
-            drive_write(&y, samples + 5 * row);
+            stepper_write(&y, samples + 5 * row);
             positions[row++] = y.position;
         }
     }

@@ -10,7 +10,8 @@ import pytest
 
 from trochia.backends.stepper_twin import StepperTwin
 from trochia.errors import ConfigError, LimitError
-from trochia.kernels.stepper import StepperConstants, StepperKernel
+from trochia.kernels.stepper import DriverConstants, StepperConstants, StepperKernel
+from trochia.machine.drivers import Fed, HBridge, fed
 from trochia.machine.motors import HybridStepper, ShaftLoad, motor
 from trochia.pulses.excitation import excitation
 
@@ -24,6 +25,10 @@ LOADS = {
     "free": ShaftLoad(),
     "heavy": ShaftLoad(inertia=2e-5, constant=0.03, friction=0.01, viscous=1e-4),
 }
+
+
+def bridged(stepper: HybridStepper, mode: str, volts: float) -> Fed:
+    return fed(stepper, HBridge(supply=volts, drop=0.0, excitation=mode))
 
 
 def reference(stepper, mode, load, pulses, ticks):
@@ -58,7 +63,7 @@ def test_kernel_equals_the_public_equations(name: str, load: str, mode: str):
     stepper, table, ticks = MOTORS[name], excitation(mode), 300
     rng = np.random.default_rng(11)
     times = np.sort(np.concatenate([rng.uniform(0, ticks * STEP, 12), [0.0, 40 * STEP, 40 * STEP, 41 * STEP]]))
-    twin = StepperTwin(stepper, table, VOLTS, LOADS[load])
+    twin = StepperTwin(bridged(stepper, mode, VOLTS), LOADS[load])
     twin.queue(times[:9], 1)
     twin.queue(times[9:], -1)
     run = twin.run(ticks * STEP)
@@ -76,7 +81,7 @@ def whole_and_cut(cuts: list[int], every: int = 1) -> tuple[np.ndarray, np.ndarr
     """Return positions and angles of a run made at once, and of the same in blocks."""
     both = []
     for blocks in ([sum(cuts)], cuts):
-        twin = StepperTwin(MOTORS["rough"], excitation("half-step"), 12.0)
+        twin = StepperTwin(bridged(MOTORS["rough"], "half-step", 12.0))
         twin.queue(np.arange(1, 60) * 171.7e-6)
         runs = [twin.run(ticks * STEP, every=every) for ticks in blocks]
         both.append(np.concatenate([np.column_stack([r.time, r.theta, r.omega, r.currents, r.position]) for r in runs]))
@@ -98,7 +103,7 @@ def test_every_tenth_sample_is_every_tenth_sample():
 def test_error_falls_with_the_fourth_power_of_the_step():
     ends = []
     for step in (160e-6, 80e-6, 5e-6):
-        twin = StepperTwin(MOTORS["shield"], excitation("two-phase"), 12.0, step=step)
+        twin = StepperTwin(bridged(MOTORS["shield"], "two-phase", 12.0), step=step)
         twin.queue(np.array([1e-3 + 0.3e-6, 5.21e-3]))
         ends.append(float(twin.run(16e-3).theta[-1]))
     coarse, fine = abs(ends[0] - ends[2]), abs(ends[1] - ends[2])
@@ -106,10 +111,11 @@ def test_error_falls_with_the_fourth_power_of_the_step():
 
 
 CONSTANTS = StepperConstants(resistance=1.0, inductance=1e-3, torque_constant=0.1, teeth=50, inertia=1e-5, creep=0.1)
+BRIDGE = DriverConstants(supply=1.0)
 
 
 def kernel(**changes: float) -> StepperKernel:
-    return StepperKernel(CONSTANTS, np.eye(2), np.zeros(4), **{"step": STEP, **changes})
+    return StepperKernel(CONSTANTS, BRIDGE, np.eye(2), np.zeros(4), **{"step": STEP, **changes})
 
 
 @pytest.mark.parametrize("step", [0.0, -1.0, math.nan, math.inf, 1e-3])
@@ -143,7 +149,7 @@ def test_pulses_may_not_come_before_those_queued_or_run():
 @pytest.mark.parametrize("volts", [np.zeros((0, 2)), np.zeros((4, 3)), np.array([[np.nan, 0.0]])])
 def test_a_table_that_is_none_is_refused(volts: np.ndarray):
     with pytest.raises(ValueError, match="rows, 2"):
-        StepperKernel(CONSTANTS, volts, np.zeros(4), step=STEP)
+        StepperKernel(CONSTANTS, BRIDGE, volts, np.zeros(4), step=STEP)
 
 
 @pytest.mark.parametrize(("ticks", "every"), [(-1, 1), (10, 0)])

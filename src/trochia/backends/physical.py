@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from trochia.backends.driven_stepper import DrivenStepper, Levels
-from trochia.backends.stepper_twin import STEP
+from trochia.backends.stepper_twin import STEP, Levels, StepperTwin
 from trochia.kernels.twin import TwinBlock, TwinJoint
 from trochia.machine.torque import drive
 from trochia.planner import Trajectory
@@ -55,7 +54,7 @@ class PhysicalJoint:
         looks = math.ceil(period / LOOK)
         self._every = math.ceil(period / looks / STEP)
         self._looks, self._tick = looks, period / looks / self._every
-        self._stepper = DrivenStepper(motor.made, motor.load, levels=LEVELS, tick=self._tick)
+        self._stepper = StepperTwin(motor.made, motor.load, levels=LEVELS, step=self._tick)
         self._stepper.run_ticks(round(SETTLING / self._tick))
         self._zero = self._stepper.now + period  # the first sample stands a period on
         self._first = self._angle_of_rest()

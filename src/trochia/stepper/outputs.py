@@ -9,8 +9,6 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from trochia.backends.driven_stepper import DrivenStepper
-
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -73,12 +71,9 @@ class Calls:
 
 
 class TwinOutput:
-    """The twin of a motor: its physics follow the steps, and lose some where the real motor would.
+    """The twin of a motor: its physics follow the steps, and lose some where the real motor would."""
 
-    A ``DrivenStepper`` lets its windings go when it is told to; a ``StepperTwin`` is a motor under current always.
-    """
-
-    def __init__(self, twin: StepperTwin | DrivenStepper) -> None:
+    def __init__(self, twin: StepperTwin) -> None:
         self.twin = twin
         self._moments: list[float] = []
         self._directions: list[int] = []
@@ -95,10 +90,9 @@ class TwinOutput:
 
     def energise(self, moment: float, *, on: bool) -> None:
         """Switch the windings on or off, as the driver does it."""
-        if isinstance(self.twin, DrivenStepper):
-            self._hand_over()
-            self._go_on(moment)
-            self.twin.set_enabled(on)
+        self._hand_over()
+        self._go_on(moment)
+        self.twin.set_enabled(on)
 
     def settle(self, moment: float, *, every: int = 1) -> StepperRun:
         """Let the twin go on to a moment [s], and return what it did since it was last looked at."""

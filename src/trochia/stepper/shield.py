@@ -109,6 +109,7 @@ class ShieldMotor:
         self.levels = (0.0, 0.0)  #: of its phases, parts of the supply
         self._whole = whole_milliseconds
         self._full_step = 0.0
+        self._released = False
 
     def set_speed(self, rpm: float) -> None:
         """Set the speed of ``step`` [rpm].
@@ -151,7 +152,10 @@ class ShieldMotor:
         self._drive(at, (float(row[0]), float(row[1])))
         self.shield.stepped(self.port, at, direction, style)
         if self.output is not None:
+            if self._released:  # a step puts the windings on again
+                self.output.energise(at, on=True)
             self.output.step(at, direction)
+        self._released = False
 
     def release(self) -> None:
         """Clear the motor's bits: both ends of its windings are low, which shorts them rather than leaves them open."""
@@ -159,6 +163,7 @@ class ShieldMotor:
         self.shield.released(self.port, self.shield.time.now)
         if self.output is not None:
             self.output.energise(self.shield.time.now, on=False)
+        self._released = True
 
     def _drive(self, moment: float, levels: tuple[float, float]) -> None:
         """Put the phases to levels; the other motor's bits stay."""

@@ -10,9 +10,9 @@ import pytest
 from trochia.analysis.stability import growth_rate, steady_angle
 from trochia.backends.stepper_twin import StepperTwin
 from trochia.errors import LimitError
+from trochia.machine.drivers import HBridge, fed
 from trochia.machine.motors import HybridStepper, ShaftLoad, motor
 from trochia.machine.motors.curves import pull_out_torque
-from trochia.pulses.excitation import excitation
 
 RAMP, RUN = 0.3, 0.9
 
@@ -27,8 +27,9 @@ def test_at_rest_back_emf_damps_the_pendulum():
 
 def steadiness(name: str, volts: float, full_steps: float) -> tuple[int, float]:
     """Return the steps lost, and the ripple of speed [parts of it], of an undamped motor brought to a speed."""
-    stepper, mode = motor(name).parameters(), excitation("microstep-32")
-    twin, rate = StepperTwin(stepper, mode, volts), full_steps * 32
+    stepper = motor(name).parameters()
+    twin = StepperTwin(fed(stepper, HBridge(supply=volts, drop=0.0, excitation="microstep-32")))
+    rate = full_steps * 32
     twin.run(0.05)
     rise = np.sqrt(2 * RAMP * np.arange(1, int(rate * RAMP / 2) + 1) / rate)
     twin.queue(twin.now + np.concatenate([rise, rise[-1] + np.arange(1, int(rate * RUN)) / rate]))

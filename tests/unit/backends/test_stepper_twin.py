@@ -9,6 +9,7 @@ import pytest
 
 from trochia.backends.stepper_twin import StepperTwin
 from trochia.errors import ConfigError
+from trochia.machine.drivers import Fed, HBridge, fed
 from trochia.machine.motors import HybridStepper, ShaftLoad, motor
 from trochia.machine.motors.curves import pull_out_torque, start_stop_speed
 from trochia.pulses.excitation import excitation
@@ -19,8 +20,12 @@ TORQUE = 0.2  #: of the pendulum at 1000 V
 SHIELD = motor("SM-42BYG011-25").parameters()
 
 
+def bridged(stepper: HybridStepper, mode: str, volts: float) -> Fed:
+    return fed(stepper, HBridge(supply=volts, drop=0.0, excitation=mode))
+
+
 def test_current_rises_as_in_a_coil_to_ohms_law():
-    run = StepperTwin(SHIELD, excitation("one-phase"), 9.4).run(0.02)
+    run = StepperTwin(bridged(SHIELD, "one-phase", 9.4)).run(0.02)
     assert np.abs(run.omega).max() < 1e-12  # aligned already: nothing turns it
     expected = 9.4 / 34 * (1 - np.exp(-run.time / SHIELD.time_constant))
     np.testing.assert_allclose(run.currents[:, 0], expected, rtol=1e-6)
@@ -28,7 +33,7 @@ def test_current_rises_as_in_a_coil_to_ohms_law():
 
 
 def test_a_small_step_rings_at_the_natural_frequency():
-    twin = StepperTwin(PENDULUM, excitation("microstep-64"), 1000.0)
+    twin = StepperTwin(bridged(PENDULUM, "microstep-64", 1000.0))
     twin.queue(np.array([0.01]))
     run = twin.run(0.2)
     swing = run.theta - run.theta[-1000:].mean()
@@ -42,7 +47,7 @@ def test_energy_is_kept():
     stepper = HybridStepper(teeth=50, resistance=0.8, inductance=2.1e-3, current=3.0, inertia=209e-7,
                             torque_constant=0.231, detent=0.02, viscous=1e-3)  # fmt: skip
     load, volts, step, mode = ShaftLoad(inertia=2e-5, constant=0.1), 3.0, 5e-6, excitation("half-step")
-    twin = StepperTwin(stepper, mode, volts, load, step=step)
+    twin = StepperTwin(bridged(stepper, mode.name, volts), load, step=step)
     twin.queue(np.arange(200, 20000, 400) * step)  # on time steps, so that a voltage holds for whole ones
     run = twin.run(0.1)
     voltage = volts * mode.levels[run.position % len(mode.levels)][1:]
@@ -70,7 +75,7 @@ def loses_steps(name: str, mode: str, full_steps: float, part: float) -> bool:
     omega, rate = stepper.speed(full_steps), full_steps * table.steps_per_full_step
     wanted = part * float(pull_out_torque(stepper, np.array(omega), volts * table.fundamental))
     start = np.sqrt(2 * RAMP * np.arange(1, int(rate * RAMP / 2) + 1) / rate)
-    twin = StepperTwin(stepper, table, volts)
+    twin = StepperTwin(bridged(stepper, mode, volts))
     twin.run(0.02)
     twin.queue(twin.now + np.concatenate([start, start[-1] + np.arange(1, int(rate)) / rate]))
     begin, block, lost = twin.now, 1e-3, 0
@@ -101,7 +106,10 @@ def test_start_without_a_ramp_is_the_pendulum_s_escape(part: float, starts: bool
     mode = excitation("microstep-64")
     fastest = start_stop_speed(PENDULUM, TORQUE, load=load, step_angle=mode.step_angle)
     rate = part * fastest / PENDULUM.step_angle * 64
-    twin = StepperTwin(PENDULUM, mode, 1000.0, ShaftLoad(constant=load.constant, inertia=load.inertia, viscous=5e-3))
+    twin = StepperTwin(
+        bridged(PENDULUM, mode.name, 1000.0),
+        ShaftLoad(constant=load.constant, inertia=load.inertia, viscous=5e-3),
+    )
     twin.run(0.3)  # comes to rest under the load
     twin.set_load(load)
     twin.queue(twin.now + np.arange(int(rate * 0.1)) / rate)
@@ -112,7 +120,7 @@ def test_start_without_a_ramp_is_the_pendulum_s_escape(part: float, starts: bool
 def run_of(full_steps: float, count: int, mode: str, *, load: ShaftLoad, volts: float) -> tuple[np.ndarray, float]:
     """Return lost steps and the turn made [full steps] of a move without a ramp that has come to rest."""
     table = excitation(mode)
-    twin = StepperTwin(SHIELD, table, volts, load)
+    twin = StepperTwin(bridged(SHIELD, mode, volts), load)
     start = float(twin.run(0.05).theta[-1])
     pulses = count * table.steps_per_full_step
     twin.queue(twin.now + np.arange(pulses) / (full_steps * table.steps_per_full_step))
@@ -147,7 +155,7 @@ def test_a_load_above_pull_out_is_not_turned():
 def test_backwards_is_the_mirror_of_forwards():
     runs = []
     for direction in (1, -1):
-        twin = StepperTwin(SHIELD, excitation("one-phase"), 9.4)
+        twin = StepperTwin(bridged(SHIELD, "one-phase", 9.4))
         twin.queue(np.arange(1, 40) * 7e-3, direction)
         runs.append(twin.run(0.4))
     np.testing.assert_allclose(runs[0].theta, -runs[1].theta, atol=1e-7)
@@ -157,4 +165,4 @@ def test_backwards_is_the_mirror_of_forwards():
 @pytest.mark.parametrize("volts", [0.0, -12.0, math.nan, math.inf])
 def test_a_supply_that_is_none_is_refused(volts: float):
     with pytest.raises(ConfigError, match="supply"):
-        StepperTwin(SHIELD, excitation("one-phase"), volts)
+        HBridge(supply=volts, drop=0.0)

@@ -7,19 +7,17 @@ import time
 
 import pytest
 
-from trochia.backends.driven_stepper import DrivenStepper
 from trochia.backends.stepper_twin import StepperTwin
 from trochia.machine.drivers import HBridge, fed
 from trochia.machine.motors import ShaftLoad, motor
-from trochia.pulses.excitation import excitation
-from trochia.stepper import PacedTime, Stepper, TwinOutput, VirtualTime
+from trochia.stepper import PacedTime, Shield, Stepper, TwinOutput, VirtualTime
 
 SHIELD = motor("SM-42BYG011-25").parameters()
 
 
 def rig(speed: float, acceleration: float) -> tuple[Stepper, TwinOutput]:
     load = ShaftLoad(inertia=2e-6, friction=0.004)
-    output = TwinOutput(StepperTwin(SHIELD, excitation("two-phase"), 9.4, load))
+    output = TwinOutput(StepperTwin(fed(SHIELD, HBridge(supply=12.0)), load))
     stepper = Stepper(output, VirtualTime())
     stepper.set_max_speed(speed)
     stepper.set_acceleration(acceleration)
@@ -32,7 +30,7 @@ def test_a_ramp_turns_the_shaft_and_loses_nothing():
     stepper.run_to_new_position(100)
     assert output.lost_steps(stepper.time.now) == 0
     turned = math.degrees(float(output.twin.run(0.01).theta[-1]))
-    assert turned == pytest.approx(100 * 1.8 + output.twin.excitation.first_angle / 50 * 180 / math.pi, abs=0.5)
+    assert turned == pytest.approx(100 * 1.8 + output.twin.made.excitation.first_angle / 50 * 180 / math.pi, abs=0.5)
 
 
 def test_a_start_beyond_the_motor_loses_steps():
@@ -57,7 +55,7 @@ def test_paced_time_does_not_run_ahead(monkeypatch: pytest.MonkeyPatch):
 def test_windings_that_are_let_go_hold_no_longer_and_align_when_they_are_on_again():
     """A weight turns a released rotor by whole teeth; switched on again it stands on a stable point, steps lost."""
     made = fed(SHIELD, HBridge(supply=12.0, excitation="two-phase", released="open"))
-    twin = DrivenStepper(made, ShaftLoad(inertia=2e-5, constant=0.02, viscous=1e-3))
+    twin = StepperTwin(made, ShaftLoad(inertia=2e-5, constant=0.02, viscous=1e-3))
     output = TwinOutput(twin)
     stepper = Stepper(output, VirtualTime())
     output.settle(0.5)
@@ -72,3 +70,25 @@ def test_windings_that_are_let_go_hold_no_longer_and_align_when_they_are_on_agai
     assert run.lost_steps[-1] != 0
     assert int(run.lost_steps[-1]) % 4 == 0
     assert stepper.current_position() == 0
+
+
+def test_a_shield_lets_go_and_takes_hold_again_with_the_next_step():
+    """Released, its windings are shorted and their current dies away; a step puts it on again."""
+    output = TwinOutput(
+        StepperTwin(fed(SHIELD, HBridge(supply=12.0, excitation="one-phase")), ShaftLoad(friction=0.005))
+    )
+    clock = VirtualTime()
+    board = Shield(clock).motor(1, 200, output)
+    board.set_speed(60)
+    board.step(20)
+    on = abs(output.settle(clock.now).currents[-1]).max()
+    board.release()
+    clock.wait(0.5)
+    off = abs(output.settle(clock.now).currents[-1]).max()
+    board.step(20)
+    again = output.settle(clock.now + 0.5)
+    assert on > 0.2
+    assert off < 1e-3
+    assert abs(again.currents[-1]).max() > 0.2
+    assert again.lost_steps[-1] == 0
+    assert math.degrees(float(again.theta[-1])) == pytest.approx(40 * 1.8, abs=1)

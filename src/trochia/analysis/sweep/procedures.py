@@ -17,8 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trochia.analysis.sweep.timing import TIMINGS, Timing
-from trochia.backends.driven_stepper import DrivenStepper, Levels
-from trochia.backends.stepper_twin import STEP
+from trochia.backends.stepper_twin import MEAN, STEP, Levels, StepperTwin
 from trochia.machine.motors.hybrid import FREE
 from trochia.machine.motors.shaft import CREEP, ShaftLoad
 
@@ -36,15 +35,14 @@ HOLD = 0.05  #: at a load before it is raised [s]
 COARSE, FINE = 0.05, 0.005  #: rises of the load, parts of the torque expected
 REPEATS = 3
 PATIENCE = 25  #: speeds in a row that cost steps, until a motor has stalled
-_MEAN = Levels(threshold=math.inf)
 
 
-def twin_of(made: Fed, load: ShaftLoad, levels: Levels = _MEAN) -> DrivenStepper:
+def twin_of(made: Fed, load: ShaftLoad, levels: Levels = MEAN) -> StepperTwin:
     """Return a motor at rest, its tick short enough for its friction."""
     drag = (made.motor.friction + load.friction) / CREEP + made.motor.viscous + load.viscous
     inertia = made.motor.inertia + load.inertia
     shortest = min(made.motor.time_constant, inertia / drag if drag else math.inf)
-    return DrivenStepper(made, load, levels=levels, tick=min(STEP, 0.4 * shortest))
+    return StepperTwin(made, load, levels=levels, step=min(STEP, 0.4 * shortest))
 
 
 def pull_out_speed(
@@ -84,7 +82,7 @@ def start_stop_speed_measured(
     return held
 
 
-def _turn(twin: DrivenStepper, made: Fed, speed: float, timing: Timing, turns: float) -> int:
+def _turn(twin: StepperTwin, made: Fed, speed: float, timing: Timing, turns: float) -> int:
     """Play some turns at a speed, and return the full steps the rotor has lost at their end, before them included."""
     rate = made.motor.full_steps * made.excitation.steps_per_full_step
     times = twin.now + timing.times(math.tau / speed / rate, round(turns * rate))
@@ -94,7 +92,7 @@ def _turn(twin: DrivenStepper, made: Fed, speed: float, timing: Timing, turns: f
 
 
 def pull_out_torque_measured(
-    made: Fed, speed: float, load: ShaftLoad = FREE, *, repeats: int = REPEATS, levels: Levels = _MEAN
+    made: Fed, speed: float, load: ShaftLoad = FREE, *, repeats: int = REPEATS, levels: Levels = MEAN
 ) -> float:
     """Return the greatest constant load carried at a speed [N·m]: the mean of some tries; 0 where it gets none.
 
@@ -106,7 +104,7 @@ def pull_out_torque_measured(
     return sum(found) / repeats
 
 
-def _one_pull_out(twin: DrivenStepper, speed: float, load: ShaftLoad, expected: float, share: float) -> float:
+def _one_pull_out(twin: StepperTwin, speed: float, load: ShaftLoad, expected: float, share: float) -> float:
     """Return the last load carried in one try."""
     made = twin.made
     twin.run(SETTLE)

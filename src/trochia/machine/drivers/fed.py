@@ -132,6 +132,21 @@ class Fed:
         """Return the torque at which the motor falls out of step at shaft speeds (...) [N·m], frictions taken off."""
         return pull_out_torque(self.motor, omega, self.amplitude, current=self.current_amplitude, load=load)
 
+    def gross_pull_out(self, omega: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the same with the motor's own frictions in it: what the currents give at most (...) [N·m]."""
+        smooth = replace(self.motor, friction=0.0, viscous=0.0)
+        return pull_out_torque(smooth, omega, self.amplitude, current=self.current_amplitude)
+
+    def lost_steps(
+        self, field_angle: NDArray[np.float64], theta: NDArray[np.float64], omega: NDArray[np.float64]
+    ) -> NDArray[np.int64]:
+        """Return the full steps the rotor has lost; see :meth:`HybridStepper.lost_steps`.
+
+        A chopper holds the currents with the field until the supply is used up; the lag is then that of a resistance
+        V/I, which is R where nothing but the resistance limits the current.
+        """
+        return self.motor.lost_steps(field_angle, theta, omega, self.voltage / self.current)
+
     def top(self, part: float = 0.2) -> float:
         """Return the speed up to which a part of the torque at rest is left [rad/s]; what one may call usable."""
         least, high = part * float(self.pull_out(np.array(0.0))), 1.0
@@ -171,25 +186,26 @@ class Fed:
         )  # fmt: skip
 
 
-def fed(motor: HybridStepper, driver: Driver, microsteps: int = 1) -> Fed:
+def fed(motor: HybridStepper, driver: Driver, microsteps: int | None = None) -> Fed:
     """Return a motor behind its driver.
 
     Parameters
     ----------
     microsteps
-        Step pulses a full step; they choose the excitation where the driver names none.
+        Step pulses a full step; they choose the excitation where the driver names none.  Without either it is
+        two-phase, and without this the driver's excitation has its own.
 
     Raises
     ------
     ConfigError
         For an excitation of other microsteps, or a current the driver or its supply cannot give.
     """
-    name = driver.excitation or _BY_MICROSTEPS.get(microsteps, f"microstep-{microsteps}")
+    name = driver.excitation or _BY_MICROSTEPS.get(microsteps or 1, f"microstep-{microsteps}")
     try:
         mode = excitation(name)
     except ConfigError as error:
         raise ConfigError(error.plain, key="driver.excitation", hint=error.hint) from None
-    if mode.steps_per_full_step != microsteps:
+    if microsteps is not None and mode.steps_per_full_step != microsteps:
         raise ConfigError(
             f"{name} takes {mode.steps_per_full_step} pulses a full step, the motor is set to {microsteps}",
             key="driver.excitation",

@@ -98,7 +98,9 @@ class HybridStepper:
         """Return the impedance of a phase [ohm] at the electrical frequency p·omega of a shaft speed [rad/s]."""
         return self.resistance + 1j * self.teeth * omega * self.inductance
 
-    def lost_steps(self, field_angle: Array, theta: Array, omega: Array) -> NDArray[np.int64]:
+    def lost_steps(
+        self, field_angle: Array, theta: Array, omega: Array, resistance: float | None = None
+    ) -> NDArray[np.int64]:
         """Return the full steps the rotor has lost against the field: multiples of four, below zero where it ran ahead.
 
         Parameters
@@ -107,11 +109,13 @@ class HybridStepper:
             Electrical angle of the phase voltages, counted on over whole turns [rad].
         theta, omega
             Of the shaft.
+        resistance
+            What a driver that holds the current to I has in place of R: V/I [ohm].
 
         Notes
         -----
         Stable points are a turn of the field apart, four full steps.  The one the rotor belongs to is the nearest, once
         the lag of the currents behind the voltages, atan(p·omega·L/R), is taken off the load angle.
         """
-        lag = np.arctan(self.teeth * omega * self.inductance / self.resistance)
+        lag = np.arctan(self.teeth * omega * self.inductance / (resistance or self.resistance))
         return 4 * np.rint((field_angle - self.teeth * theta - lag) / math.tau).astype(np.int64)

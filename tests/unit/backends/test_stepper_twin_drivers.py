@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from trochia.backends.driven_stepper import DrivenStepper, Levels
+from trochia.backends.stepper_twin import MEAN, SWITCHED, StepperTwin
 from trochia.machine.drivers import Chopper, HBridge, fed
 from trochia.machine.motors import ShaftLoad, motor
 
@@ -29,8 +29,8 @@ def test_the_two_levels_agree(decay: str, name: str):
     micro = 16 if name == "microstep-16" else 1
     made = fed(BIG, Chopper(supply=24.0, current=2.0, decay=decay, excitation=name), micro)
     angles = []
-    for threshold in (math.inf, 0.0):
-        twin = DrivenStepper(made, LOAD, levels=Levels(threshold=threshold))
+    for levels in (MEAN, SWITCHED):
+        twin = StepperTwin(made, LOAD, levels=levels)
         twin.run(0.05)
         twin.queue(ramp(160 * micro, 300.0 * micro, 2000.0 * micro, twin.now))
         run = twin.run(0.7, every=5)
@@ -42,7 +42,7 @@ def test_the_two_levels_agree(decay: str, name: str):
 
 def test_only_sharp_stretches_are_done_switch_by_switch():
     made = fed(BIG, Chopper(supply=24.0, current=2.0), 16)
-    easy, hard = DrivenStepper(made), DrivenStepper(made)
+    easy, hard = StepperTwin(made), StepperTwin(made)
     for twin, torques in ((easy, (0.05,)), (hard, (0.15, 0.25, 0.35, 0.38, 0.41))):
         for torque in torques:  # of 0.46 N·m
             twin.set_load(ShaftLoad(constant=torque, viscous=5e-3))
@@ -54,7 +54,7 @@ def test_only_sharp_stretches_are_done_switch_by_switch():
 
 def test_beyond_the_holding_torque_it_slips_by_whole_turns_of_the_field():
     made = fed(BIG, Chopper(supply=24.0, current=2.0), 16)
-    twin = DrivenStepper(made, ShaftLoad(constant=1.1 * made.holding))
+    twin = StepperTwin(made, ShaftLoad(constant=1.1 * made.holding))
     run = twin.run(0.05)
     assert run.lost_steps[-1] >= 4
     twin.set_load(ShaftLoad(viscous=0.02))
@@ -68,7 +68,7 @@ def test_an_open_motor_coasts_and_a_shorted_one_brakes():
     speeds = {}
     for released in ("open", "short"):
         made = fed(motor("SM-42BYG011-25").parameters(), HBridge(supply=12.0, released=released))
-        twin = DrivenStepper(made, ShaftLoad(inertia=2e-5))
+        twin = StepperTwin(made, ShaftLoad(inertia=2e-5))
         twin.queue(ramp(150, 300.0, 1500.0, 0.05))
         twin.run(0.5)
         twin.set_enabled(False)
@@ -82,7 +82,7 @@ def test_an_open_motor_coasts_and_a_shorted_one_brakes():
 
 def test_hold_current_is_reduced_after_its_delay_and_comes_back_with_the_next_step():
     made = fed(BIG, Chopper(supply=24.0, current=2.0, decay="slow", hold_current=0.5, hold_delay=0.05), 1)
-    twin = DrivenStepper(made, levels=Levels(threshold=math.inf))
+    twin = StepperTwin(made, levels=MEAN)
     twin.queue(np.array([0.01]))
     before = np.abs(twin.run(0.055).currents[-1])
     after = np.abs(twin.run(0.1).currents[-1])
@@ -95,7 +95,7 @@ def test_hold_current_is_reduced_after_its_delay_and_comes_back_with_the_next_st
 @pytest.mark.parametrize(("steps", "jump"), [(1.9, 0), (-1.9, 0), (2.1, -4), (-3.0, 4)])
 def test_power_up_pulls_the_rotor_to_the_nearest_stable_point(steps: float, jump: int):
     made = fed(replace(BIG, friction=0.01), Chopper(supply=24.0, current=2.0), 1)
-    twin = DrivenStepper(made, ShaftLoad(viscous=5e-3), angle=steps * math.pi / 2)
+    twin = StepperTwin(made, ShaftLoad(viscous=5e-3), angle=steps * math.pi / 2)
     run = twin.run(0.4)
     at_rest = made.motor.teeth * run.theta[-1] - made.excitation.first_angle
     assert at_rest == pytest.approx(-jump / 4 * math.tau, abs=0.05)

@@ -1,4 +1,4 @@
-"""The kernels behind a driver against their plain statements in Python, step by step."""
+"""The stepper's kernels behind a chopper and a coupling against their plain statements in Python, step by step."""
 
 from __future__ import annotations
 
@@ -8,11 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from trochia.backends.driven_stepper import DrivenStepper, Levels
-from trochia.backends.stepper_twin import StepperTwin
+from trochia.backends.stepper_twin import MEAN, SWITCHED, StepperTwin
 from trochia.errors import ConfigError
-from trochia.kernels.drive import CouplingConstants, DriveKernel, DriverConstants, Mode
-from trochia.kernels.stepper import StepperConstants
+from trochia.kernels.stepper import CouplingConstants, DriverConstants, Mode, StepperConstants, StepperKernel
 from trochia.machine.drivers import Chopper, Fed, HBridge, fed
 from trochia.machine.drivers.switching import Switch, step_current, switch_phase
 from trochia.machine.motors import ShaftLoad, motor
@@ -40,22 +38,10 @@ def runge_kutta(rate: Callable[[np.ndarray], np.ndarray], state: np.ndarray, ste
     return state + step / 6 * (a + 2 * b + 2 * c + d)
 
 
-def test_behind_a_bridge_it_is_the_voltage_driven_twin():
-    made = fed(BIG, HBridge(supply=12.0, drop=2.6))
-    pulses = 0.01 + np.arange(60) / 700
-    one, other = DrivenStepper(made, LOAD), StepperTwin(BIG, made.excitation, 9.4, LOAD)
-    one.queue(pulses)
-    other.queue(pulses)
-    a, b = one.run(0.1, every=10), other.run(0.1, every=10)
-    assert a.theta == pytest.approx(b.theta, abs=1e-12)
-    assert a.currents == pytest.approx(b.currents, abs=1e-12)
-    assert (a.lost_steps == b.lost_steps).all()
-
-
 @pytest.mark.parametrize("decay", ["slow", "fast", "mixed"])
 def test_the_mean_of_a_chopper_is_as_python_states_it(decay: str):
     made = chopped(decay)
-    twin = DrivenStepper(made, LOAD, levels=Levels(threshold=np.inf))
+    twin = StepperTwin(made, LOAD, levels=MEAN)
     chopper, stepper = made.chopper, made.motor
     assert chopper is not None
     levels = made.excitation.levels
@@ -92,7 +78,7 @@ def test_the_mean_of_a_chopper_is_as_python_states_it(decay: str):
 @pytest.mark.parametrize("decay", ["slow", "fast", "mixed"])
 def test_every_switching_is_as_python_states_it(decay: str):
     made = chopped(decay)
-    twin = DrivenStepper(made, LOAD, levels=Levels(threshold=0.0))
+    twin = StepperTwin(made, LOAD, levels=SWITCHED)
     chopper, stepper = made.chopper, made.motor
     assert chopper is not None
     twin.queue((np.arange(1, 30) * 6 + 0.5) * H)
@@ -125,7 +111,7 @@ def test_every_switching_is_as_python_states_it(decay: str):
 def test_a_load_behind_a_coupling_is_as_python_states_it():
     made = fed(BIG, HBridge(supply=12.0, drop=2.0))
     coupling = Coupling(stiffness=8.0, damping=1e-3)
-    twin = DrivenStepper(made, LOAD, coupling=coupling)
+    twin = StepperTwin(made, LOAD, coupling=coupling)
     twin.queue(np.arange(1, 12) * 100 * H)
     run = twin.run(1200 * H)
     state = np.array([0.0, 0.0, np.pi / 4 / BIG.teeth, 0.0, np.pi / 4 / BIG.teeth, 0.0])
@@ -144,9 +130,9 @@ def test_a_coupling_swings_at_its_resonance():
     coupling, load = Coupling(stiffness=20.0), ShaftLoad(inertia=8e-5)
     constants = StepperConstants(resistance=1e3, inductance=1.0, torque_constant=1e-9, teeth=50, inertia=free.inertia,
                                  creep=0.1)  # fmt: skip
-    kernel = DriveKernel(
-        constants, DriverConstants(supply=1.0), CouplingConstants(stiffness=20.0, inertia=8e-5, load=0.1),
-        np.zeros((4, 2)), np.zeros(4), step=H,
+    kernel = StepperKernel(
+        constants, DriverConstants(supply=1.0), np.zeros((4, 2)), np.zeros(4), step=H,
+        coupling=CouplingConstants(stiffness=20.0, inertia=8e-5, load=0.1),
     )  # fmt: skip
     run = kernel.run(20000)
     apart = run.state[:, 2] - run.state[:, 4]
@@ -158,15 +144,15 @@ def test_a_coupling_swings_at_its_resonance():
 def test_stiff_couplings_and_ticks_beyond_the_motor_are_refused():
     made = fed(BIG, HBridge(supply=12.0))
     with pytest.raises(ConfigError, match="too long for this motor and load"):
-        DrivenStepper(made, LOAD, coupling=Coupling(stiffness=1e7))
+        StepperTwin(made, LOAD, coupling=Coupling(stiffness=1e7))
     with pytest.raises(ConfigError, match="needs an inertia"):
-        DrivenStepper(made, FREE, coupling=Coupling(stiffness=10.0))
+        StepperTwin(made, FREE, coupling=Coupling(stiffness=10.0))
     with pytest.raises(ConfigError, match="above zero"):
         Coupling(stiffness=0.0)
 
 
 def test_state_can_be_put_back():
-    twin = DrivenStepper(chopped(), LOAD)
+    twin = StepperTwin(chopped(), LOAD)
     kernel = twin._kernel
     twin.queue(np.arange(1, 20) * 1e-3)
     twin.run(5e-3)
