@@ -10,6 +10,7 @@ import math
 from typing import TYPE_CHECKING
 
 from trochia.errors import LimitError
+from trochia.stepper import checks
 from trochia.stepper.law import next_step
 
 if TYPE_CHECKING:
@@ -34,7 +35,8 @@ class Stepper:
         self._square, self._way = 0.0, 1  # squared speed after the last step, and which way it was
         self._last = 0.0  # when it was
         self._due: tuple[float, float] | None = None  # when the next is, and the squared speed after it
-        self._steady: float | None = None  # when the next of run_speed is
+        self._since: float | None = None  # of run_speed: when its last step was, or when it began
+        self._flows = False  # whether it has made one
         time.join(self._next_due)
 
     # limits
@@ -47,7 +49,7 @@ class Stepper:
         LimitError
             Unless it is above 0.
         """
-        self._max_speed = _positive("maximum speed", speed, "steps/s")
+        self._max_speed = checks.speed("maximum speed", speed)
         self._change()
 
     def max_speed(self) -> float:
@@ -62,9 +64,9 @@ class Stepper:
         LimitError
             Unless both are above 0.
         """
-        self._acceleration = _positive("acceleration", acceleration, "steps/s²")
-        wanted = acceleration if deceleration is None else deceleration
-        self._deceleration = _positive("deceleration", wanted, "steps/s²")
+        up = checks.acceleration("acceleration", acceleration)
+        down = up if deceleration is None else checks.acceleration("deceleration", deceleration)
+        self._acceleration, self._deceleration = up, down
         self._change()
 
     def set_start_stop_speed(self, speed: float) -> None:
@@ -77,7 +79,7 @@ class Stepper:
         LimitError
             Unless it is above 0.
         """
-        self._start_stop = _positive("start/stop speed", speed, "steps/s")
+        self._start_stop = checks.speed("start/stop speed", speed)
 
     def acceleration(self) -> float:
         """Return the acceleration [steps/s²]."""
@@ -95,9 +97,9 @@ class Stepper:
 
     def set_current_position(self, position: int) -> None:
         """Call the place where it stands ``position``; the target is the same place, and the speed is 0."""
-        self._position = self._target = position
+        self._position = self._target = checks.whole("position", position)
         self._square, self._speed = 0.0, 0.0
-        self._due = self._steady = None
+        self._due = self._since = None
 
     def target_position(self) -> int:
         """Return where it is going [steps]."""
@@ -115,16 +117,26 @@ class Stepper:
         """Return whether it moves, or has steps to go."""
         return self._square > 0.0 or self._position != self._target
 
+    def in_motion(self) -> bool:
+        """Return whether the last step of a ramp was not its last."""
+        return self._square > 0.0
+
     # speeding up and braking
 
     def move_to(self, position: int) -> None:
-        """Set an absolute target [steps]; ``run`` gets there."""
-        self._target = position
+        """Set an absolute target [steps]; ``run`` gets there.
+
+        Raises
+        ------
+        LimitError
+            Unless it is a whole number.
+        """
+        self._target = checks.whole("target", position)
         self._change()
 
     def move(self, steps: int) -> None:
-        """Set a target as many steps from here."""
-        self.move_to(self._position + steps)
+        """Set a target as many steps from here; errors as of ``move_to``."""
+        self.move_to(self._position + checks.whole("move", steps))
 
     def run(self) -> bool:
         """Make the step that is due, if one is; return whether there is still way to go.
@@ -136,17 +148,23 @@ class Stepper:
         LimitError
             When the first or the last step would be faster than the start/stop speed.
         """
+        self._take_over()
         if self._due is None:  # the way begins now; other motors may begin theirs before time goes on
             self._check_ends()
             self._plan(self.time.now)
             return self._due is not None
         moment, square = self._due
         if self.time.now < moment:
-            self.time.idle()
+            self.time.idle(self._next_due)
             return True
-        self._make(moment, self._way)
+        now = self.time.now  # later than due where nobody ran it in time: the step is made late, not in the past
+        if self._square and now - moment > moment - self._last:
+            self._square = 0.0  # so late that it has come to rest
+            self._plan(now)
+            return self.is_running()
+        self._make(now, self._way)
         self._square = square
-        self._plan(moment)
+        self._plan(now)
         return self.is_running()
 
     def run_to_position(self) -> None:
@@ -161,16 +179,23 @@ class Stepper:
 
     def stop(self) -> None:
         """Set the nearest target that braking allows: ``run`` comes to rest there."""
+        self._take_over()
         self.move_to(self._position + self._way * math.ceil(self._square / (2.0 * self._deceleration) - 1e-9))
 
     # constant speed
 
     def set_speed(self, speed: float) -> None:
-        """Set the speed of ``run_speed`` [steps/s], at most the greatest speed; 0 stands still."""
-        if not math.isfinite(speed):
-            raise LimitError(f"a speed must be a number of steps/s, not {speed}")
-        self._speed = max(-self._max_speed, min(self._max_speed, speed))
-        self._steady = None
+        """Set the speed of ``run_speed`` [steps/s], at most the greatest speed; 0 stands still.
+
+        Raises
+        ------
+        LimitError
+            Unless it is a finite number.
+        """
+        wanted = checks.finite("speed", speed, "steps/s")
+        self._speed = max(-self._max_speed, min(self._max_speed, wanted))
+        if not self._speed:
+            self._since = None
 
     def run_speed(self) -> bool:
         """Make the step that is due at constant speed, if one is; return whether it was made.
@@ -182,26 +207,27 @@ class Stepper:
         """
         if not self._speed:
             return False
-        if self._steady is None:
+        if self._since is None:
             if abs(self._speed) > self._start_stop:
                 raise LimitError(
                     f"{abs(self._speed):g} steps/s from rest is more than the start/stop speed of "
                     f"{self._start_stop:g} steps/s",
                     hint="Speed up to it: set_max_speed(), set_acceleration(), move_to() and run().",
                 )
-            self._steady = self.time.now + 1.0 / abs(self._speed)
-        if self.time.now < self._steady:
-            self.time.idle()
+            self._since, self._flows = self.time.now, False
+            self._square, self._due = 0.0, None  # a ramp ends here
+        if self.time.now < self._since + 1.0 / abs(self._speed):
+            self.time.idle(self._next_due)
             return False
-        self._make(self._steady, 1 if self._speed > 0 else -1)
-        self._steady += 1.0 / abs(self._speed)
+        self._make(self.time.now, 1 if self._speed > 0 else -1)
+        self._since, self._flows = self.time.now, True
         return True
 
     def run_speed_to_position(self) -> bool:
         """As ``run_speed``, towards the target, whatever the speed's sign; return whether there is way to go."""
         left = self.distance_to_go()
         if not left or not self._speed:
-            self._steady = None
+            self._since = None
             return False
         self._speed = math.copysign(self._speed, left)
         self.run_speed()
@@ -218,6 +244,16 @@ class Stepper:
         self.output.energise(self.time.now, on=False)
 
     # inside
+
+    def _take_over(self) -> None:
+        """Let a ramp go on from constant speed, where that still runs; what was not run in time stands."""
+        if self._since is None:
+            return
+        runs = self._flows and self._speed and self.time.now <= self._since + 1.0 / abs(self._speed)
+        self._since = None
+        if runs:
+            self._square, self._way = self._speed**2, 1 if self._speed > 0 else -1
+            self._change()
 
     def _check_ends(self) -> None:
         """Refuse ramps whose first or last step is too fast: it takes √(2/a), or 1/v where v is reached within it."""
@@ -264,14 +300,6 @@ class Stepper:
 
     def _next_due(self) -> float | None:
         """Return when something is due [s]."""
-        moments = [self._due[0]] if self._due else []
-        if self._steady is not None:
-            moments.append(self._steady)
-        return min(moments, default=None)
-
-
-def _positive(name: str, value: float, unit: str) -> float:
-    """Return a value above 0."""
-    if not 0.0 < value < math.inf:
-        raise LimitError(f"the {name} must be more than 0 {unit}, not {value:g}", hint="To stand still, stop().")
-    return value
+        if self._since is not None:
+            return self._since + 1.0 / abs(self._speed)
+        return self._due[0] if self._due else None

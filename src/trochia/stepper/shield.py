@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from trochia.errors import ConfigError, LimitError
 from trochia.pulses.excitation import half_step, table_microstep
 from trochia.pulses.latch import BITS, latch_byte
+from trochia.stepper import checks
 
 if TYPE_CHECKING:
     from trochia.stepper.outputs import StepOutput
@@ -119,9 +120,8 @@ class ShieldMotor:
         LimitError
             Unless it is above 0.
         """
-        if not 0.0 < rpm < float("inf"):
-            raise LimitError(f"the speed must be more than 0 rpm, not {rpm:g}", hint="To stand still, release().")
-        self._full_step = 60.0 / (self.steps_per_turn * rpm)
+        turns = checks.positive("speed", rpm, "rpm", checks.TURNS, "To stand still, release().")
+        self._full_step = 60.0 / (self.steps_per_turn * turns)
 
     def step(self, count: int, direction: int = FORWARD, style: Style = SINGLE) -> None:
         """Make steps and wait for the last one's time to pass.
@@ -131,13 +131,16 @@ class ShieldMotor:
         Raises
         ------
         LimitError
-            When no speed was set.
+            When no speed was set, for a count that is not whole or below 0, and as ``onestep``.
         """
         if not self._full_step:
             raise LimitError("step() needs a speed", hint="set_speed() first.")
+        _check(direction, style)
+        if checks.whole("count", count) < 0:
+            raise LimitError(f"the count must not be below 0, not {count}", hint="Backwards is step(…, BACKWARD).")
         interval = self._full_step / style.division
         begin = self.shield.time.now
-        for done in range(1, count * (style.division if style is MICROSTEP else 1) + 1):
+        for done in range(1, int(count) * (style.division if style is MICROSTEP else 1) + 1):
             self.onestep(direction, style)
             passed = done * interval
             if self._whole:
@@ -145,7 +148,14 @@ class ShieldMotor:
             self.shield.time.wait_until(begin + passed)
 
     def onestep(self, direction: int, style: Style, moment: float | None = None) -> None:
-        """Make one step now, or at a moment that is due [s]."""
+        """Make one step now, or at a moment that is due [s].
+
+        Raises
+        ------
+        LimitError
+            For a direction or a way of excitation that there is not.
+        """
+        _check(direction, style)
         at = self.shield.time.now if moment is None else moment
         self.position = style.after(self.position, direction) % _TURN
         row = _MICRO[self.position] if style is MICROSTEP else _HALF[self.position // _SECTOR]
@@ -169,3 +179,11 @@ class ShieldMotor:
         """Put the phases to levels; the other motor's bits stay."""
         self.levels = levels
         self.shield.latch(moment, latch_byte(levels, self.port, self.shield.image))
+
+
+def _check(direction: object, style: object) -> None:
+    """Refuse a direction or a way of excitation that there is not."""
+    if direction not in {FORWARD, BACKWARD}:
+        raise LimitError(f"a step is FORWARD (1) or BACKWARD (-1), not {direction!r}")
+    if not isinstance(style, Style):
+        raise LimitError(f"a step is made in {', '.join(Style.__members__)}, not {style!r}")

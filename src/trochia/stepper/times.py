@@ -6,11 +6,17 @@ that is: in virtual time at once, so that a sketch is proved as fast as the comp
 
 from __future__ import annotations
 
+import math
 import time
 from typing import TYPE_CHECKING, Protocol
 
+from trochia.errors import LimitError
+
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+SLICE = 0.02  #: most that passes on the wall before who follows is told [s]
+BEHIND = 0.1  #: most that is caught up with: who waited for a key is not hurried afterwards [s]
 
 
 class Time(Protocol):
@@ -29,8 +35,12 @@ class Time(Protocol):
         """Add somebody who can say when something is due next [s]; None: nothing is."""
         ...
 
-    def idle(self) -> None:
-        """Let time pass to whatever is due next."""
+    def follow(self, told: Callable[[float], None]) -> None:
+        """Add somebody who is told when time has passed, and what it is now [s]."""
+        ...
+
+    def idle(self, asker: Callable[[], float | None]) -> None:
+        """Let time pass to whatever is due next, on behalf of one who has joined."""
         ...
 
 
@@ -40,6 +50,8 @@ class VirtualTime:
     def __init__(self) -> None:
         self._now = 0.0
         self._dues: list[Callable[[], float | None]] = []
+        self._told: list[Callable[[float], None]] = []
+        self._asked: list[Callable[[], float | None]] = []  # who idled since time last went on
 
     @property
     def now(self) -> float:
@@ -48,17 +60,37 @@ class VirtualTime:
 
     def wait_until(self, moment: float) -> None:
         """Go to a moment [s], never back."""
-        self._now = max(self._now, moment)
+        if moment > self._now:
+            self._now = moment
+            self._asked.clear()
+            for told in self._told:
+                told(moment)
 
     def join(self, due: Callable[[], float | None]) -> None:
         """Add somebody who can say when something is due next [s]; None: nothing is."""
         self._dues.append(due)
 
-    def idle(self) -> None:
-        """Go to whatever is due next; nowhere when something is due already, or nothing at all."""
+    def follow(self, told: Callable[[float], None]) -> None:
+        """Add somebody who is told when time has passed, and what it is now [s]."""
+        self._told.append(told)
+
+    def idle(self, asker: Callable[[], float | None]) -> None:
+        """Go to whatever is due next, on behalf of one who has joined.
+
+        Where something is due already, its owner has the next word; but who asks a second time has found nobody who
+        takes it: a motor that is no longer run holds up no other.
+        """
+        moment = self._next(asker)
+        if moment is not None:
+            self.wait_until(moment)
+
+    def _next(self, asker: Callable[[], float | None]) -> float | None:
+        """Return when time should stop next [s]; None: it may not go on."""
         moments = [moment for due in self._dues if (moment := due()) is not None]
-        if moments:
-            self.wait_until(min(moments))
+        if min(moments, default=math.inf) <= self._now and asker not in self._asked:
+            self._asked.append(asker)
+            return None
+        return min((moment for moment in moments if moment > self._now), default=None)
 
     def wait(self, duration: float) -> None:
         """Let a duration [s] pass."""
@@ -72,17 +104,30 @@ class PacedTime(VirtualTime):
     ----------
     pace
         Seconds of virtual time a second; 0: as fast as the computer can.
+
+    Raises
+    ------
+    LimitError
+        For a pace below 0, or that is no number.
     """
 
     def __init__(self, pace: float = 1.0) -> None:
+        if not 0.0 <= pace < math.inf:
+            raise LimitError(f"the pace must be 0 or more seconds a second, not {pace:g}",
+                             hint="1 is real time, 0 as fast as the computer can.")  # fmt: skip
         super().__init__()
         self._pace = pace
-        self._began = time.monotonic()
+        self._began = time.monotonic()  # when time was 0, had it never stood
 
     def wait_until(self, moment: float) -> None:
         """Wait until the wall clock has come to a moment [s]."""
-        if self._pace:
-            left = moment / self._pace - (time.monotonic() - self._began)
-            if left > 0.0:
-                time.sleep(left)
+        while self._pace and (left := self._left(moment)) > 0.0:
+            time.sleep(min(left, SLICE))
+            super().wait_until(min(moment, (time.monotonic() - self._began) * self._pace))
         super().wait_until(moment)
+
+    def _left(self, moment: float) -> float:
+        """Return what is left to a moment on the wall [s]; time that was not waited for does not count."""
+        wall = time.monotonic()
+        self._began = max(self._began, wall - self._now / self._pace - BEHIND)
+        return moment / self._pace - (wall - self._began)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
@@ -155,6 +156,121 @@ def test_starts_beyond_the_motor_are_refused():
         made.run_speed()
     made.set_speed(560)
     made.run_speed()
+
+
+@pytest.mark.parametrize("wrong", [1.5, math.nan, math.inf, "12", None, True, 10**30])
+def test_positions_are_whole_numbers(wrong: Any):
+    made, _ = motor()
+    for take in (made.move_to, made.move, made.set_current_position, made.run_to_new_position):
+        with pytest.raises(LimitError, match=r"whole number|within ±9007199254740992"):
+            take(wrong)
+    assert (made.target_position(), made.current_position()) == (0, 0)
+    made.move_to(np.int64(3))
+    made.move(2.0)  # type: ignore[arg-type]
+    assert made.target_position() == 2
+
+
+@pytest.mark.parametrize("wrong", [0, -5, math.nan, math.inf, "fast", None, 1e300, 1e-320])
+def test_limits_are_quantities(wrong: Any):
+    made, _ = motor(500, 900)
+    for take in (made.set_max_speed, made.set_acceleration, made.set_start_stop_speed):
+        with pytest.raises(LimitError, match=r"more than 0|a number of|from 1e-06 to"):
+            take(wrong)
+    with pytest.raises(LimitError, match="deceleration"):
+        made.set_acceleration(100, wrong if wrong is not None else 0)
+    assert (made.max_speed(), made.acceleration(), made.deceleration()) == (500, 900, 900)
+
+
+def test_a_ramp_goes_on_from_constant_speed():
+    """From 100 steps/s the way to 500 is (500² - 100²)/(2 a) = 120 steps, and no step is later than the one before."""
+    made, kept = motor(500, 1000)
+    made.set_speed(100)
+    while made.current_position() < 50:
+        made.set_speed(100)  # as sketches do, each time round
+        made.run_speed()
+    made.move_to(400)
+    while made.speed() < 500 - 1e-9:
+        made.run()
+    assert made.current_position() == 50 + 120
+    assert (np.diff(kept.moments)[:170] <= 0.01 + 1e-9).all()
+    made.run_to_position()
+    made.set_speed(-100)
+    while made.current_position() > 390:
+        made.run_speed()
+    made.stop()
+    assert made.target_position() == 390 - 5
+    made.run_to_position()
+    assert made.current_position() == 385
+
+
+def test_constant_speed_that_was_left_stands():
+    made, kept = motor(500, 1000)
+    made.set_speed(500)
+    while made.current_position() < 3:
+        made.run_speed()
+    made.time.wait_until(1.0)
+    made.run_to_new_position(10)
+    assert kept.moments[3] == pytest.approx(1 + math.sqrt(2 / 1000))
+
+
+def test_a_motor_that_nobody_runs_holds_up_no_other():
+    time = VirtualTime()
+    (left, _), (run, kept) = [(Stepper(out, time), out) for out in (Kept(), Kept())]
+    for made in (left, run):
+        made.set_max_speed(500)
+        made.set_acceleration(1000)
+    left.move(100)
+    while left.current_position() < 9:
+        left.run()
+    before = time.now
+    run.run_to_new_position(50)
+    assert kept.moments[-1] - before == pytest.approx(2 * math.sqrt(50 / 1000))
+    resumed = time.now
+    left.run_to_position()
+    moments = np.array(left.output.moments)  # type: ignore[attr-defined]
+    assert (np.diff(moments) > 0).all()
+    assert moments[9] - resumed == pytest.approx(math.sqrt(2 / 1000))  # from rest again: it had stood
+
+
+def test_several_motors_in_turn_are_as_exact_as_alone():
+    time = VirtualTime()
+    outputs = [Kept() for _ in range(3)]
+    motors = [Stepper(output, time) for output in outputs]
+    for i, made in enumerate(motors):
+        made.set_max_speed(200 + 100 * i)
+        made.set_acceleration(900)
+        made.move(100 + 50 * i)
+    while any([made.run() for made in motors]):  # noqa: C419 - every motor must be asked
+        pass
+    for i, output in enumerate(outputs):
+        exact = profile(Demand(steps=100 + 50 * i, speed=200 + 100 * i, acceleration=900))
+        assert np.array(output.moments) == pytest.approx(exact.times, rel=1e-9)
+
+
+def test_a_group_takes_limits_as_they_are_and_gives_them_back():
+    time = VirtualTime()
+    one, two = Stepper(Kept(), time), Stepper(Kept(), time)
+    group = StepperGroup(one, two)
+    for made in (one, two):
+        made.set_max_speed(500)
+        made.set_acceleration(1000)
+    one.set_max_speed(100)
+    group.move_to([100, 50])
+    assert two.max_speed() == pytest.approx(50)
+    group.run_to_position()
+    assert (one.max_speed(), two.max_speed()) == (100, 500)
+    assert time.now == pytest.approx(100 / 100 + 100 / 1000)
+    group.move_to([1000, 900])
+    while one.current_position() < 300:
+        group.run()
+    with pytest.raises(LimitError, match="from rest"):
+        group.move_to([0, 0])
+    group.stop()
+    group.run_to_position()
+    assert one.current_position() < 1000
+    with pytest.raises(LimitError, match="whole number"):
+        group.move_to([1.5, 0])  # type: ignore[list-item]
+    assert two.max_speed() == 500
 
 
 def test_outputs_are_switched():

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 import time
+from itertools import pairwise
 
 import pytest
 
 from trochia.backends.stepper_twin import StepperTwin
+from trochia.errors import LimitError
 from trochia.machine.drivers import HBridge, fed
 from trochia.machine.motors import ShaftLoad, motor
 from trochia.stepper import PacedTime, Shield, Stepper, TwinOutput, VirtualTime
@@ -50,6 +52,27 @@ def test_paced_time_does_not_run_ahead(monkeypatch: pytest.MonkeyPatch):
     assert wall[0] == pytest.approx(100.5)
     paced.wait_until(0.5)  # past already
     assert (paced.now, wall[0]) == (1.0, pytest.approx(100.5))
+
+
+def test_who_waited_is_not_hurried_afterwards(monkeypatch: pytest.MonkeyPatch):
+    """A minute at a prompt is no time of the motor's: its five seconds afterwards last five."""
+    wall, heard = [100.0], list[float]()
+    monkeypatch.setattr(time, "monotonic", lambda: wall[0])
+    monkeypatch.setattr(time, "sleep", lambda seconds: wall.__setitem__(0, wall[0] + seconds))
+    paced = PacedTime()
+    paced.follow(heard.append)
+    paced.wait(1.0)
+    wall[0] += 60.0
+    paced.wait(5.0)
+    assert paced.now == 6.0
+    assert wall[0] == pytest.approx(166.0, abs=0.11)
+    assert max(after - before for before, after in pairwise(heard)) < 0.13
+
+
+@pytest.mark.parametrize("pace", [-1.0, math.nan, math.inf])
+def test_a_pace_that_cannot_be_is_refused(pace: float):
+    with pytest.raises(LimitError, match="pace"):
+        PacedTime(pace)
 
 
 def test_windings_that_are_let_go_hold_no_longer_and_align_when_they_are_on_again():

@@ -125,3 +125,14 @@ def test_what_the_shield_has_not_is_refused():
         motor.step(1)
     with pytest.raises(LimitError, match="more than 0 rpm"):
         motor.set_speed(0)
+    motor.set_speed(60)
+    for count in (-3, 2.5, "x"):
+        with pytest.raises(LimitError, match="count"):
+            motor.step(count)  # type: ignore[arg-type]
+    for direction in (0, 2, "forward"):
+        with pytest.raises(LimitError, match="FORWARD"):
+            motor.step(1, direction)  # type: ignore[arg-type]
+    for call in (motor.step, lambda _count, *rest: motor.onestep(*rest)):
+        with pytest.raises(LimitError, match="INTERLEAVE"):
+            call(1, FORWARD, "DOUBLE")  # type: ignore[arg-type]
+    assert motor.shield.time.now == 0
