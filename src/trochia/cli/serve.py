@@ -54,10 +54,12 @@ def users_option(command: Callable[..., None]) -> Callable[..., None]:
                    "over a restart; without it nothing is kept.")  # fmt: skip
 @click.option("--recordings", type=click.Path(file_okay=False, path_type=Path), metavar="DIR",
               help="Folder of the recordings that clients start; without it they cannot.")  # fmt: skip
+@click.option("--logs", type=click.Path(file_okay=False, path_type=Path), metavar="DIR",
+              help="Folder, made if need be, of the logs that programs write (LOGOPEN, LOG); without it none are kept.")  # fmt: skip
 def command(
     *, machine_name: str, backend: str, port: str | None, baud: int, board: str, tcp: int, host: str,
     allow: tuple[str, ...], certificate: Path | None, key: Path | None, users_file: Path | None,
-    journal: Path | None, recordings: Path | None,
+    journal: Path | None, recordings: Path | None, logs: Path | None,
 ) -> None:  # fmt: skip
     """Serve a machine: a page with its state and STOP, an HTTP and WebSocket interface, a Python client.
 
@@ -82,6 +84,8 @@ def command(
     from trochia.server.listen import Served, listen  # noqa: PLC0415
     from trochia.server.users import Users  # noqa: PLC0415
 
+    if logs is not None:
+        logs.mkdir(parents=True, exist_ok=True)
     users = Users(users_file or settings_folder() / "users.json")
     machine = load(machine_name)
     moves = mover(machine, backend, port=port, baud=baud, board=board)
@@ -91,7 +95,7 @@ def command(
     socket = listen(host, tcp)
     doors = Doors.of(int(socket.getsockname()[1]), allow, secure=certificate is not None)
     clock = clock_of(backend)
-    runtime, end_codes = _runtime(moves, machine_name, journal, recordings, now=clock())
+    runtime, end_codes = _runtime(moves, machine_name, journal, recordings, logs, now=clock())
     desk = Desk(runtime, users, doors, log=None if journal is None else journal / "access")
     tls = (certificate, key) if certificate is not None and key is not None else None
     try:
@@ -101,7 +105,7 @@ def command(
 
 
 def _runtime(
-    moves: SegmentBackend, name: str, journal: Path | None, recordings: Path | None, *, now: float
+    moves: SegmentBackend, name: str, journal: Path | None, recordings: Path | None, logs: Path | None, *, now: float
 ) -> tuple[Runtime, Callable[[], None]]:
     """Return what runs the machine, and what ends the programs of its codes."""
     from trochia.cli.setup import of_machine  # noqa: PLC0415 - `trochia --help` must stay light
@@ -111,7 +115,7 @@ def _runtime(
 
     reading = of_machine(name)
     runtime = Runtime(moves, journal=journal, recordings=recordings, work=reading.work, reading=reading,
-                      keep=None if journal is None else journal / NAME, now=now)  # fmt: skip
+                      logs=logs, keep=None if journal is None else journal / NAME, now=now)  # fmt: skip
     return runtime, attach(runtime, moves.machine, name)
 
 

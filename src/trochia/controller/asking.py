@@ -64,6 +64,7 @@ def go_on(it: Controller, job: Job) -> None:
         it.note("answer", **entry_of(answer))
     try:
         ready = it.readier.onward(made, answer, at=it.position(), exact=job.by_block)
+        it.logs.check(ready.plan.program.actions)
         after = _next(it, job, made, ready)
     except TrochiaError as error:
         _fail(it, Cause.PROGRAM, str(error))

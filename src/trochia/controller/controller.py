@@ -21,6 +21,7 @@ from trochia.controller.interrupted import Interrupted, work_entry
 from trochia.controller.job import Job
 from trochia.controller.jog import Jog
 from trochia.controller.lock import Lock
+from trochia.controller.logs import Logs
 from trochia.controller.outputs import Outputs
 from trochia.controller.panel import Watch
 from trochia.controller.readying import MDI, Readier
@@ -73,8 +74,7 @@ class Controller:
         self.work = work or WorkState()
         self.switches, self.overrides = SwitchStatus(), OverrideStatus()
         self.alarms = Alarms()
-        self._guards = Guards(machine)
-        self.readier = Readier(machine, reading)
+        self._guards, self.readier = Guards(machine), Readier(machine, reading)
         self.loaded: tuple[str, str] | None = None  # name and text of the program
         self.preview: Ready | None = None  # the program as it was planned when it was loaded
         self.running: Ready | None = None
@@ -82,13 +82,13 @@ class Controller:
         self.activity: Activity | None = None
         self.request: Request | None = None
         self.hooked: frozenset[int] = frozenset()  # codes M100 to M199 that have programs
-        self.hook = self._said = ""  # the one whose program runs; what the program has said last
+        self.hook = self.said = ""  # the one whose program runs; what the program has said last
         self.panel = Watch(machine.panel)
+        self.logs = Logs(None)
         self.lock = Lock(machine.servo_period)
         self._outputs = Outputs(machine)
         self.asked = 0.0  # when a command came last [s]
         self.resume_at: float | None = None  # when a job is resumed whose spindle has to get to its speed first [s]
-        self._spindle_stopped = False
         self.away: Away | None = None  # a held job whose tool was taken away
         self.leaving = False  # whether it is to be, at rest
         self.armed = machine.beam is None
@@ -98,7 +98,7 @@ class Controller:
         self.back = 0.0  # plan time at which a resumed job is where it was held
         self._sequence = self._requests = 0
         self._pointed = -POINT
-        self._moved = self._on = False
+        self._moved = self._on = self._spindle_stopped = False
 
     # -- in and out
 
@@ -373,8 +373,8 @@ class Controller:
     def _message(self) -> str:
         """Return what the program has said last."""
         if isinstance(self.activity, Job):
-            self._said = self.activity.doings.last_words
-        return self._said
+            self.said = self.activity.doings.last_words
+        return self.said
 
     def _program(self) -> ProgramStatus | None:
         if self.running is not None and isinstance(self.activity, Job):

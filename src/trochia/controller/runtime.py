@@ -25,6 +25,7 @@ from trochia.backends.live import Orders, Trouble
 from trochia.controller.controller import Controller
 from trochia.controller.interrupted import draft, interrupted, keep
 from trochia.controller.journal import Journal
+from trochia.controller.logs import Logs
 from trochia.controller.offsets import Keeper, kept_work
 from trochia.controller.preparing import Preparer
 from trochia.controller.recording import Recorder
@@ -68,6 +69,8 @@ class Runtime:
         Folder of the journal; None: nothing is kept.
     recordings
         Folder of the recordings that commands ask for; None: they are refused.
+    logs
+        Folder of the logs that programs write; None: they are not kept.
     keep
         File in which offsets and variables outlast the controller; None: they do not.
     reading
@@ -85,12 +88,14 @@ class Runtime:
 
     def __init__(
         self, backend: SegmentBackend, *, journal: Path | None = None, recordings: Path | None = None,
-        work: WorkState | None = None, keep: Path | None = None, reading: Reading | None = None, now: float = 0.0,
+        work: WorkState | None = None, keep: Path | None = None, logs: Path | None = None,
+        reading: Reading | None = None, now: float = 0.0,
     ) -> None:  # fmt: skip
         self.backend = backend = compensated(backend)
         self.controller = Controller(backend.machine, backend.open(now), latency=backend.latency,
                                      ahead=backend.ahead, work=kept_work(keep, work) if keep else work,
                                      reading=reading, title=backend.title)  # fmt: skip
+        self.controller.logs = Logs(logs)
         self._keeper = Keeper(keep, self.controller.work) if keep else None
         self.load = Load()
         self.recorder = Recorder(backend, turn=PERIOD)
@@ -147,6 +152,7 @@ class Runtime:
         trouble = self._keeper.look(controller.work) if self._keeper is not None else ""
         if trouble:
             controller.note("failure", text=f"offsets are not kept: {trouble}")
+        controller.logs.look(controller)
         entries, controller.journal = controller.journal, []
         for kind, data in entries:
             self._write(now, kind, data)
@@ -195,6 +201,7 @@ class Runtime:
             self._thread.join()
         self.backend.close()
         self.recorder.stop(wait=True)
+        self.controller.logs.close()
         self._write(self._status.time, "closed", {})
         if self._journal is not None:
             self._journal.close()

@@ -87,6 +87,7 @@ def begin(it: Controller, text: str, name: str, *, block_by_block: bool) -> str:
 def _go(it: Controller, made: Ready, *, block_by_block: bool, inside: Entry | None = None) -> str:
     """Begin a job of what is planned."""
     it.panel.check_safe(it)
+    told = it.logs.check(made.plan.program.actions)
     options = Options(
         optional_stop=it.switches.optional_stop, block_by_block=block_by_block,
         dark=it.switches.dry_run, feed=it.overrides.feed, rapid=it.overrides.rapid, spindle=it.overrides.spindle,
@@ -101,7 +102,7 @@ def _go(it: Controller, made: Ready, *, block_by_block: bool, inside: Entry | No
         start = dict(zip(AXES, (float(at) for at in made.start), strict=True))
         it.note("job", name=made.name, program=made.text, start=start, work=work_entry(made.found),
                 block_delete=it.switches.block_delete, seconds=made.plan.time_s)  # fmt: skip
-    return f"{made.plan.time_s:.1f} s"
+    return f"{made.plan.time_s:.1f} s" + (f"; {told}" if told else "")
 
 
 def _asked(it: Controller, made: Ready, *, exact: bool = False) -> Ready:

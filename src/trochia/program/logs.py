@@ -23,13 +23,15 @@ if TYPE_CHECKING:
 _OTHERS = frozenset({".ngc", ".nc", ".gcode", ".tap", ".pmc", ".toml", ".tbl", ".var", ".ini", ".json", ".py", ".sh"})
 
 
-def logs_of(actions: Iterable[Action], program: Path) -> dict[Path, bytes]:
+def logs_of(actions: Iterable[Action], program: Path, place: str = "the program's folder") -> dict[Path, bytes]:
     """Return the files that a program writes into its own folder, and what they will hold.
 
     Parameters
     ----------
     program
         Where it lies; a name without a file, if it came from elsewhere.
+    place
+        What its folder is called in errors.
 
     Raises
     ------
@@ -40,7 +42,7 @@ def logs_of(actions: Iterable[Action], program: Path) -> dict[Path, bytes]:
     for action in actions:
         if not isinstance(action, Log):
             continue
-        path = _path_of(action, program)
+        path = _path_of(action, program, place)
         if not action.opens:
             files[path] += action.text.encode("latin-1", "replace") + b"\n"
         elif not action.append:
@@ -50,7 +52,7 @@ def logs_of(actions: Iterable[Action], program: Path) -> dict[Path, bytes]:
     return {path: bytes(content) for path, content in files.items()}
 
 
-def write_logs(actions: Iterable[Action], program: Path) -> list[Path]:
+def write_logs(actions: Iterable[Action], program: Path, place: str = "the program's folder") -> list[Path]:
     """Write the log files of a program; return them.
 
     Raises
@@ -58,13 +60,13 @@ def write_logs(actions: Iterable[Action], program: Path) -> list[Path]:
     ProgramError
         As :func:`logs_of`, before anything is written; and where the system does not let it.
     """
-    files = logs_of(actions, program)
+    files = logs_of(actions, program, place)
     for path, content in files.items():
         try:
             write_whole(path, content)
         except OSError as error:
             raise ProgramError(f"the log file {path} cannot be written: {error.strerror}",
-                               hint="May you write into the program's folder?") from None  # fmt: skip
+                               hint=f"May you write into {place}?") from None  # fmt: skip
     return list(files)
 
 
@@ -73,13 +75,13 @@ def _is_log(path: Path) -> bool:
     return path.is_file() and path.suffix.lower() not in _OTHERS and not os.access(path, os.X_OK)
 
 
-def _path_of(action: Log, program: Path) -> Path:
+def _path_of(action: Log, program: Path, place: str) -> Path:
     """Return where a log lies."""
     home = program.parent.resolve()
     path = (home / action.file).resolve()
     wrong = ""
     if not path.is_relative_to(home):
-        wrong = "leads out of the program's folder"
+        wrong = f"leads out of {place}"
     elif path == program.resolve():
         wrong = "is the program itself"
     elif path.name.startswith(".") or (path.exists() and not _is_log(path)):

@@ -14,7 +14,7 @@ import pytest
 from trochia.client import Client
 from trochia.controller.journal import entries
 from trochia.controller.offsets import kept_work
-from trochia.messages.command import Enable, JogBy, WorkZero
+from trochia.messages.command import Enable, JogBy, Load, Run, WorkZero
 
 TROCHIA = Path(sys.executable).with_name("trochia")
 
@@ -28,7 +28,7 @@ def served(tmp_path):
     """Start a server in a process of its own; give it, its address and the password it showed."""
     process = subprocess.Popen(
         [TROCHIA, "serve", "-m", "reference-mill", "--tcp", "0", "--users", tmp_path / "users.json", "--journal",
-         tmp_path / "journal"], stdout=subprocess.PIPE, text=True, env=os.environ | {"PYTHONUNBUFFERED": "1"},
+         tmp_path / "journal", "--logs", tmp_path / "logs"], stdout=subprocess.PIPE, text=True, env=os.environ | {"PYTHONUNBUFFERED": "1"},
     )  # fmt: skip
     assert process.stdout is not None
     password = re.search(r"password (\S+)", process.stdout.readline())
@@ -60,6 +60,27 @@ def test_the_end_brakes_what_moves_and_switches_the_drives_off(served, tmp_path,
     places = [entry["position"]["X"] for entry in kept if entry["kind"] == "point"]
     assert 0.0 < places[-1] < 100.0
     assert sum(entry["kind"] == "login" for entry in entries(tmp_path / "journal" / "access")) == 1
+
+
+def test_logs_of_programs_lie_in_their_folder(served, tmp_path) -> None:
+    process, address, password = served
+    with Client.connect(address, "operator", password) as client:
+        client.take()
+        client.command(Enable())
+        client.command(Load(name="../part.ngc", text="(LOGOPEN, part.txt)\nG21 G91 G1 F6000 X1\n(LOG,X #<_x>)\nM2\n"))
+        client.command(Run())
+        client.wait_until(lambda status: status.state == "idle" and status.message == "X 1.000000", timeout=30.0)
+    process.terminate()
+    process.communicate(timeout=60)
+    assert (tmp_path / "logs" / "part.txt").read_text() == "X 1.000000\n"
+
+
+def test_a_folder_of_logs_that_cannot_be_made_is_one_message(tmp_path) -> None:
+    (tmp_path / "file").touch()
+    done = _run("serve", "-m", "reference-mill", "--users", str(tmp_path / "u"), "--logs", str(tmp_path / "file/logs"))
+    assert done.returncode == 2
+    assert "Traceback" not in done.stderr
+    assert "file/logs" in done.stderr
 
 
 def test_beyond_this_computer_only_under_names(tmp_path) -> None:
