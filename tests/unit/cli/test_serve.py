@@ -28,7 +28,8 @@ def served(tmp_path):
     """Start a server in a process of its own; give it, its address and the password it showed."""
     process = subprocess.Popen(
         [TROCHIA, "serve", "-m", "reference-mill", "--tcp", "0", "--users", tmp_path / "users.json", "--journal",
-         tmp_path / "journal", "--logs", tmp_path / "logs"], stdout=subprocess.PIPE, text=True, env=os.environ | {"PYTHONUNBUFFERED": "1"},
+         tmp_path / "journal", "--logs", tmp_path / "logs"],
+        stdout=subprocess.PIPE, text=True, env=os.environ | {"PYTHONUNBUFFERED": "1"},
     )  # fmt: skip
     assert process.stdout is not None
     password = re.search(r"password (\S+)", process.stdout.readline())
