@@ -18,12 +18,13 @@ if TYPE_CHECKING:
     from trochia.machine.motors import ShaftLoad
     from trochia.machine.torque import Drive
 
-_KINDS = ("h-bridge", "l/r", "chopper")  # those of `machine.drivers.DRIVERS`
+_KINDS = ("h-bridge", "l/r", "chopper", "A4988", "DRV8825", "TMC2209", "L293D")  # those of `machine.drivers.DRIVERS`
 _OPTIONS = (
     click.option("-m", "--machine", "machine_name", metavar="MACHINE", help="Machine file, with motor and driver."),
     click.option("--joint", metavar="NAME", help="Its joint; without it the first that names motor and driver."),
     click.option("--motor", metavar="NAME", help="A motor of the library, in place of a machine."),
-    click.option("--driver", type=click.Choice(_KINDS), help="What feeds it; chopper where a current is given."),
+    click.option("--driver", type=click.Choice(_KINDS, case_sensitive=False), help="What feeds it, or its chip; "
+                 "chopper where a current is given."),
     click.option("--supply", metavar="VOLTAGE", help='Of the driver, "24 V".'),
     click.option("--current", metavar="CURRENT", help='Of a chopper, "2 A".'),
     click.option("--series", metavar="RESISTANCE", help='Of an l/r drive, "10 ohm".'),
@@ -124,7 +125,7 @@ def _of_motor(given: dict[str, Any]) -> Asked:
 
     row = motor(given["motor"])
     driver = _driver(given)
-    name = given["excitation"] or ("microstep-16" if driver.kind == "chopper" else "two-phase")
+    name = given["excitation"] or ("microstep-16" if driver.current is not None else "two-phase")
     made = fed(wired(row.parameters(), given["wiring"]), driver, excitation(name).steps_per_full_step)
     load = ShaftLoad(
         inertia=_number(given, "inertia", "inertia") or 0.0,
@@ -136,23 +137,24 @@ def _of_motor(given: dict[str, Any]) -> Asked:
 
 def _driver(given: dict[str, Any]) -> Driver:
     """Return the driver that the options name."""
-    from trochia.machine.drivers import Chopper, HBridge, SeriesResistor  # noqa: PLC0415 - as above
+    from trochia.machine.drivers import DRIVERS, Chopper, SeriesResistor  # noqa: PLC0415 - as above
 
     supply, current = _number(given, "supply", "voltage"), _number(given, "current", "current")
     series = _number(given, "series", "resistance")
     kind = given["driver"] or ("chopper" if current else "l/r" if series else "h-bridge")
     if supply is None:
         raise click.UsageError('A driver needs a supply, like --supply "24 V".')
-    mode = given["excitation"] or ("microstep-16" if kind == "chopper" else "two-phase")
-    if kind == "chopper":
+    cls = DRIVERS[kind]
+    mode = given["excitation"] or ("microstep-16" if issubclass(cls, Chopper) else "two-phase")
+    if issubclass(cls, Chopper):
         if current is None:
-            raise click.UsageError('A chopper needs its current, like --current "2 A".')
-        return Chopper(supply=supply, current=current, excitation=mode)
-    if kind == "l/r":
+            raise click.UsageError(f'{kind} needs its current, like --current "1 A".')
+        return cls(supply=supply, current=current, excitation=mode)
+    if issubclass(cls, SeriesResistor):
         if series is None:
             raise click.UsageError('An l/r drive needs its resistor, like --series "10 ohm".')
-        return SeriesResistor(supply=supply, series=series, excitation=mode)
-    return HBridge(supply=supply, excitation=mode)
+        return cls(supply=supply, series=series, excitation=mode)
+    return cls(supply=supply, excitation=mode)
 
 
 def _number(given: dict[str, Any], name: str, dimension: str) -> float | None:

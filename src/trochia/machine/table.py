@@ -180,6 +180,11 @@ def _value(table: Table, name: str, codec: Codec | Record | Variant, *, rotary: 
         inner = table.table(name)
         return None if inner is None else build(inner, codec.cls, rotary=rotary)
     if isinstance(codec, Variant):
+        said = table.values.get(name)
+        if isinstance(said, str):
+            kind = said if said in codec.registry else next(iter(codec.registry))
+            raise table.error(name, f"expected a table, not {shown(said)}",
+                              hint=f'Like {name} = {{ kind = "{kind}", … }}.')  # fmt: skip
         inner = table.table(name)
         return None if inner is None else _variant(inner, codec, rotary=rotary)
     return table.read(name, codec, rotary=rotary)

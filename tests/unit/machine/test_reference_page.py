@@ -12,7 +12,7 @@ from trochia.machine.acceleration import CurveOfAcceleration
 from trochia.machine.axes import Axis, PathLimits
 from trochia.machine.codecs import Exact, Flag, Number, Quantity, Ratio, Text, Whole
 from trochia.machine.compensation import Compensation, Squareness
-from trochia.machine.drivers import DRIVERS
+from trochia.machine.drivers import LAWS
 from trochia.machine.error_table import TableOfErrors
 from trochia.machine.homing import METHODS, Homing, LimitSwitch
 from trochia.machine.io import CHANNELS, ELECTRICAL, Beam, Channel, Spindle
@@ -38,7 +38,7 @@ TABLES = {
 } | {f"motor, kind {kind}": cls for kind, cls in MOTORS.items()} | {
     f"transmission, kind {kind}": cls for kind, cls in TRANSMISSIONS.items()
 } | {
-    f"driver, kind {kind}": cls for kind, cls in DRIVERS.items()
+    f"driver, kind {kind}": cls for kind, cls in LAWS.items()
 } | {"amplifier": ServoAmplifier, "train": DriveTrain, "notch": NotchData} | {
     f"loop, kind {kind}": cls for kind, cls in LOOPS.items()
 } | {

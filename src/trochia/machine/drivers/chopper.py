@@ -17,6 +17,7 @@ import numpy as np
 
 from trochia.errors import ConfigError
 from trochia.machine.codecs import Number, Quantity, Text
+from trochia.machine.drivers.chip import Chip, check_supply
 from trochia.machine.drivers.voltage import CURRENT_LIMIT, EXCITATION, POWER_LIMIT, SUPPLY, WHEN_RELEASED
 from trochia.machine.schema import Bound, check_bounds, key
 
@@ -33,6 +34,7 @@ class Chopper:
     """A current-controlled driver."""
 
     kind: ClassVar[str] = "chopper"
+    chip: ClassVar[Chip | None] = None
 
     supply: float = field(metadata=SUPPLY)
     current: float = field(metadata=key(Quantity("current"), "peak of a phase, as set at the driver", Bound.POSITIVE))
@@ -63,6 +65,7 @@ class Chopper:
 
     def __post_init__(self) -> None:
         check_bounds(self)
+        check_supply(self.chip, self.kind, self.supply)
         for name in ("mixed", "hold_current"):
             if not 0 <= getattr(self, name) <= 1:
                 raise ConfigError(f"must be 0 to 1, not {getattr(self, name):g}", key=name)

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, ClassVar, Protocol
 import numpy as np
 
 from trochia.errors import ConfigError
+from trochia.machine.drivers.chip import Chip, excited
 from trochia.machine.drivers.chopper import Chopper
 from trochia.machine.motors.curves import corner_speed, holding_torque, pull_out_torque
-from trochia.machine.motors.excitation import excitation
 from trochia.machine.motors.hybrid import FREE
 
 if TYPE_CHECKING:
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from trochia.machine.motors.hybrid import HybridStepper
     from trochia.machine.motors.shaft import ShaftLoad
 
-_BY_MICROSTEPS = {1: "two-phase", 2: "half-step"}
 MOST_SPEED = 1e4  #: no stepper turns as fast [rad/s]
 MOST_OVERLOAD = 1.0 + 1e-9  #: a current on its limit is within it
 
@@ -33,6 +32,7 @@ class Driver(Protocol):
     """What every driver says of a phase; see :class:`~trochia.machine.drivers.voltage.HBridge` for the meanings."""
 
     kind: ClassVar[str]
+    chip: ClassVar[Chip | None]
 
     @property
     def supply(self) -> float:
@@ -198,19 +198,9 @@ def fed(motor: HybridStepper, driver: Driver, microsteps: int | None = None) -> 
     Raises
     ------
     ConfigError
-        For an excitation of other microsteps, or a current the driver or its supply cannot give.
+        For an excitation of other microsteps, or microsteps or a current the driver or its supply cannot give.
     """
-    name = driver.excitation or _BY_MICROSTEPS.get(microsteps or 1, f"microstep-{microsteps}")
-    try:
-        mode = excitation(name)
-    except ConfigError as error:
-        raise ConfigError(error.plain, key="driver.excitation", hint=error.hint) from None
-    if microsteps is not None and mode.steps_per_full_step != microsteps:
-        raise ConfigError(
-            f"{name} takes {mode.steps_per_full_step} pulses a full step, the motor is set to {microsteps}",
-            key="driver.excitation",
-            hint=f"microsteps = {mode.steps_per_full_step} would do.",
-        )
+    mode = excited(driver.chip, driver.kind, driver.excitation, microsteps)
     result = Fed(motor=replace(motor, resistance=motor.resistance + driver.resistance), excitation=mode, driver=driver)
     _check_current(result)
     return result

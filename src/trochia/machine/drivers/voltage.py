@@ -11,6 +11,7 @@ from typing import ClassVar
 from trochia.errors import ConfigError
 from trochia.machine.codecs import Quantity, Text
 from trochia.machine.drivers.bridge import Bridge, check_dead_time
+from trochia.machine.drivers.chip import Chip, check_supply
 from trochia.machine.schema import Bound, check_bounds, key
 
 IDLE = ("hold", "short", "open")  #: what becomes of the phases when a motor is released
@@ -27,6 +28,7 @@ class HBridge:
     """A bridge for each phase, as an L293D; its saturation drop is taken off the supply, and is what heats it."""
 
     kind: ClassVar[str] = "h-bridge"
+    chip: ClassVar[Chip | None] = None
 
     supply: float = field(metadata=SUPPLY)
     drop: float = field(
@@ -49,6 +51,7 @@ class HBridge:
 
     def __post_init__(self) -> None:
         check_bounds(self)
+        check_supply(self.chip, self.kind, self.supply)
         if self.drop >= self.supply:
             raise ConfigError(f"must be below the supply of {self.supply:g} V, not {self.drop:g} V", key="drop")
         check_dead_time(Bridge(turn_on=self.turn_on, turn_off=self.turn_off, dead_time=self.dead_time))
@@ -79,6 +82,7 @@ class SeriesResistor:
     """L/R drive: a higher supply and a resistor before each phase make the current rise L/(R + R_series) fast."""
 
     kind: ClassVar[str] = "l/r"
+    chip: ClassVar[Chip | None] = None
 
     supply: float = field(metadata=SUPPLY)
     series: float = field(metadata=key(Quantity("resistance"), "of the resistor before a phase", Bound.POSITIVE))
