@@ -75,8 +75,20 @@ _FACTORS["torque"] = {
     "mN·m": 1e-3,
     "mNm": 1e-3,
     "oz·in": 7.0615518e-3,
+    "kgf·cm": 9.80665e-2,
+    "kg·cm": 9.80665e-2,
+    "gf·cm": 9.80665e-5,
+    "g·cm": 9.80665e-5,
 }
-_FACTORS["inertia"] = {"kg·m²": 1.0, "kg·m^2": 1.0, "kgm2": 1.0, "kg·cm²": 1e-4, "g·cm²": 1e-7, "gcm2": 1e-7}
+_FACTORS["inertia"] = {
+    "kg·m²": 1.0,
+    "kg·m^2": 1.0,
+    "kgm2": 1.0,
+    "kg·cm²": 1e-4,
+    "g·cm²": 1e-7,
+    "gcm2": 1e-7,
+    "oz·in²": 1.8289977e-5,
+}
 _FACTORS["mass"] = {"kg": 1.0, "g": 1e-3, "t": 1e3}
 _FACTORS["force"] = {"N": 1.0, "kN": 1e3}
 _FACTORS["power"] = {"W": 1.0, "kW": 1e3, "mW": 1e-3}
@@ -103,6 +115,8 @@ _EXACT: dict[str, dict[str, Fraction]] = {
 # exponents of three digits at most: an exact 1e999999999 would fill the memory
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?"
 _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(\S.*?)?\s*\Z")
+#: as catalogues print a product and a power, and keyboards have them: N.cm, oz-in, g*cm^2
+_PRODUCT, _SQUARE = re.compile(r"(?<=[A-Za-z])[.*•⋅-](?=[A-Za-z])"), re.compile(r"(?<=[A-Za-z])\^?2\Z")
 _FRACTION = re.compile(rf"\s*([+-]?\d+\s*/\s*\d+|{_NUMBER})\s*(\S.*?)?\s*\Z")
 
 
@@ -117,8 +131,10 @@ def parse(text: object, dimension: str) -> float:
     units = _FACTORS[dimension]
     match = _QUANTITY.match(text) if isinstance(text, str) else None
     unit = match.group(2) if match else None
+    if unit is not None and unit not in units:
+        unit = _SQUARE.sub("²", _PRODUCT.sub("·", unit))
     if match is None or unit is None or unit not in units:
-        raise _refusal(text, unit, dimension)
+        raise _refusal(text, match.group(2) if match else None, dimension)
     factor = units[unit]
     try:
         if isinstance(factor, Fraction):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -15,14 +16,15 @@ if TYPE_CHECKING:
 
     from trochia.machine.drivers import Driver, Fed
     from trochia.machine.machine import Machine
-    from trochia.machine.motors import ShaftLoad
+    from trochia.machine.motors import CatalogueStepper, ShaftLoad
     from trochia.machine.torque import Drive
 
 _KINDS = ("h-bridge", "l/r", "chopper", "A4988", "DRV8825", "TMC2209", "L293D")  # those of `machine.drivers.DRIVERS`
 _OPTIONS = (
     click.option("-m", "--machine", "machine_name", metavar="MACHINE", help="Machine file, with motor and driver."),
     click.option("--joint", metavar="NAME", help="Its joint; without it the first that names motor and driver."),
-    click.option("--motor", metavar="NAME", help="A motor of the library, in place of a machine."),
+    click.option("--motor", metavar="NAME", help="A motor of the library (`trochia motors`), or my.toml:NAME of "
+                 "your own, in place of a machine."),
     click.option("--driver", type=click.Choice(_KINDS, case_sensitive=False), help="What feeds it, or its chip; "
                  "chopper where a current is given."),
     click.option("--supply", metavar="VOLTAGE", help='Of the driver, "24 V".'),
@@ -119,11 +121,11 @@ def joint_motor(machine: Machine, name: str | None) -> Asked:
 def _of_motor(given: dict[str, Any]) -> Asked:
     """Return a motor of the library behind the driver given."""
     from trochia.machine.drivers import fed  # noqa: PLC0415 - `trochia --help` must stay light
-    from trochia.machine.motors import ShaftLoad, motor  # noqa: PLC0415
+    from trochia.machine.motors import ShaftLoad  # noqa: PLC0415
     from trochia.machine.motors.excitation import excitation  # noqa: PLC0415
     from trochia.machine.motors.wiring import wired  # noqa: PLC0415
 
-    row = motor(given["motor"])
+    row = named(given["motor"])
     driver = _driver(given)
     name = given["excitation"] or ("microstep-16" if driver.current is not None else "two-phase")
     made = fed(wired(row.parameters(), given["wiring"]), driver, excitation(name).steps_per_full_step)
@@ -133,6 +135,42 @@ def _of_motor(given: dict[str, Any]) -> Asked:
         constant=_number(given, "load_torque", "torque") or 0.0,
     )
     return Asked(made=made, load=load, title=f"{given['motor']}, {driver.kind} at {driver.supply:g} V")
+
+
+def own_motors(file: str) -> dict[str, CatalogueStepper]:
+    """Return the motors of a file of one's own, by name.
+
+    Raises
+    ------
+    ConfigError, UnitError
+        For a file that cannot be read, and the first mistake in it.
+    """
+    from trochia.machine.load import read_text  # noqa: PLC0415 - `trochia --help` must stay light
+    from trochia.machine.motors import rows_of  # noqa: PLC0415
+
+    return rows_of(read_text(Path(file)), file)
+
+
+def named(name: str) -> CatalogueStepper:
+    """Return a motor by its name in the library, or by ``my.toml:NAME`` in a file of one's own.
+
+    Raises
+    ------
+    ConfigError, UnitError
+        When there is none of that name, or the file has a mistake.
+    """
+    from trochia.machine.motors import motor  # noqa: PLC0415 - `trochia --help` must stay light
+
+    file, toml, own = name.rpartition(".toml")
+    if not toml or (own and not own.startswith(":")):
+        return motor(name)
+    rows = own_motors(file + toml)
+    wanted = own[1:] or (next(iter(rows)) if len(rows) == 1 else "")
+    if wanted not in rows:
+        said = f"has no motor {wanted!r}" if wanted else "has several motors"
+        hint = units.did_you_mean(wanted, rows) or f"Name one of {', '.join(rows)}: {file}{toml}:NAME"
+        raise ConfigError(f"{file}{toml} {said}", hint=hint)
+    return rows[wanted]
 
 
 def _driver(given: dict[str, Any]) -> Driver:

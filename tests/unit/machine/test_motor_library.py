@@ -20,6 +20,7 @@ holding_torque = "0.3 N·m"
 inertia = "50 g·cm²"
 source = "a data sheet"
 checked = true
+read = "2026-11-23"
 """
 
 
@@ -53,7 +54,12 @@ def test_every_motor_of_the_library_is_plausible(name: str):
     # both phases at rated current give back the catalogue's holding torque
     assert math.sqrt(row.phases_on) * parameters.torque_constant * row.current == pytest.approx(row.holding_torque)
     assert 0.2e-3 < parameters.time_constant < 20e-3
+    # implied: rotors of steppers accelerate alike, and the magnet's flux is of the size of the rated current's
+    assert 1e4 < row.holding_torque / row.inertia < 1e5
+    assert 0.2 < parameters.torque_constant / (parameters.teeth * parameters.inductance * parameters.current) < 1.25
+    assert row.detent_torque < 0.12 * row.holding_torque
     assert row.source
+    assert row.checked == (row.read is not None)
     if row.voltage is not None:
         assert row.voltage == pytest.approx(row.current * row.resistance, rel=0.1)
 
@@ -69,7 +75,15 @@ def test_the_motor_of_the_shield_has_the_published_constant():
     [
         ('resistance = "0 ohm"', ConfigError, "motors.M.resistance: must be above zero"),
         ('resistance = "2 mH"', UnitError, "resistance"),
-        ("full_steps = 201", ConfigError, "multiple of 4"),
+        ("full_steps = 201", ConfigError, "200 or 204 would do"),
+        ("full_steps = 3", ConfigError, "4 is the least"),
+        ("full_steps = 0", ConfigError, "above zero"),
+        ("full_steps = 200.5", ConfigError, "whole number"),
+        ('resistance = "-2 ohm"', ConfigError, 'above zero, not "-2 ohm"'),
+        ('kind = "reluctance"', ConfigError, "one of hybrid, permanent-magnet"),
+        ('read = "yesterday"', ConfigError, "expected a day"),
+        ('assumed = "inertia, indctance"', ConfigError, "did you mean inductance"),
+        ('inertia = "50 gcm"', UnitError, "inertia"),
         ("phases_on = 3", ConfigError, "must be 1 or 2, not 3"),
         ('detent_torque = "0.4 N·m"', ConfigError, "below the holding torque"),
         ('indutance = "4 mH"', ConfigError, "inductance"),
@@ -84,6 +98,24 @@ def test_an_absurd_row_is_named_with_its_line(line: str, error: type[Exception],
 def test_unknown_motor_names_the_near_one():
     with pytest.raises(ConfigError, match="QSH5718-41"):
         motor("QSH5718-40")
+
+
+def test_a_row_needs_no_source_but_one_that_was_checked_says_where_and_when():
+    own = "\n".join(row for row in ROW.splitlines() if not row.startswith(("source", "checked", "read")))
+    assert not rows_of(own)["M"].checked
+    for missing in ("source", "read"):
+        text = "\n".join(row for row in ROW.splitlines() if not row.startswith(missing))
+        with pytest.raises(ConfigError, match=f"motors.M.{missing}: missing; a row that was checked"):
+            rows_of(text)
+
+
+def test_units_as_catalogues_print_them():
+    for line, value in (('holding_torque = "3 kg.cm"', 0.2942), ('holding_torque = "42 oz-in"', 0.29659),
+                        ('holding_torque = "30 N.cm"', 0.3), ('holding_torque = "3000 gf·cm"', 0.2942)):  # fmt: skip
+        assert rows_of(with_line(line))["M"].holding_torque == pytest.approx(value, rel=1e-4)
+    for line, value in (('inertia = "50 g.cm2"', 50e-7), ('inertia = "50 g-cm^2"', 50e-7),
+                        ('inertia = "0.3 oz-in²"', 54.87e-7)):  # fmt: skip
+        assert rows_of(with_line(line))["M"].inertia == pytest.approx(value, rel=1e-3)
 
 
 @pytest.mark.parametrize("text", ["[motors.M\n", "[motor.M]\n", "motors = 3\n"])

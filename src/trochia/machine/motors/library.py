@@ -32,8 +32,9 @@ def motor(name: str) -> CatalogueStepper:
     """
     rows = library()
     if name not in rows:
-        raise ConfigError(f"no motor is called {name!r}; the library has {', '.join(rows)}",
-                          hint=did_you_mean(name, rows))  # fmt: skip
+        near = did_you_mean(name, rows)
+        listed = f"`trochia motors` lists its {len(rows)}"
+        raise ConfigError(f"the library has no motor {name!r}", hint=f"{near} {listed}" if near else listed)
     return rows[name]
 
 
