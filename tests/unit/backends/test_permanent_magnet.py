@@ -8,14 +8,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from trochia.backends.driven_stepper import DrivenStepper
 from trochia.backends.stepper_twin import StepperTwin
-from trochia.machine.drivers import Chopper, fed
+from trochia.machine.drivers import Chopper, HBridge, fed
 from trochia.machine.motors import ShaftLoad, motor, rows_of
 from trochia.machine.motors.wiring import wired
 from trochia.pulses.excitation import excitation
 
 TIN_CAN = replace(motor("9904-112-35014"), detent_torque=8e-3, friction=1e-3)
+
+
+def bridged(stepper, mode: str, volts: float):
+    """Return a motor behind a bridge without a drop."""
+    return fed(stepper, HBridge(supply=volts, drop=0.0, excitation=mode), 1)
 
 
 def typed(full_steps: int):
@@ -39,7 +43,7 @@ inertia = "1 g·cm²"
 def test_any_tin_can_turns_a_turn_in_its_own_steps(full_steps: int, degrees: float, mode: str):
     stepper, table = typed(full_steps), excitation(mode)
     assert math.degrees(stepper.step_angle) == pytest.approx(degrees)
-    twin = StepperTwin(stepper, table, 5.0, ShaftLoad(viscous=4e-6))
+    twin = StepperTwin(bridged(stepper, mode, 5.0), ShaftLoad(viscous=4e-6))
     begin = twin.run(0.5).theta[-1]
     pulses = full_steps * table.steps_per_full_step
     twin.queue(twin.now + np.arange(pulses) / (20 * table.steps_per_full_step))
@@ -51,7 +55,7 @@ def test_any_tin_can_turns_a_turn_in_its_own_steps(full_steps: int, degrees: flo
 def unpowered(load: float) -> float:
     """Return where a load takes the tin can that is switched off [full steps]."""
     made = fed(TIN_CAN.parameters(), Chopper(supply=24.0, current=0.24, excitation="one-phase"), 1)
-    twin = DrivenStepper(made, ShaftLoad(constant=load, viscous=2e-5), enabled=False)
+    twin = StepperTwin(made, ShaftLoad(constant=load, viscous=2e-5), enabled=False)
     return float(twin.run(1.0, every=100).theta[-1]) / made.motor.step_angle
 
 
@@ -64,7 +68,7 @@ def test_the_detent_holds_it_without_power_up_to_the_detent_torque():
 
 def test_a_hybrid_without_detent_is_held_by_nothing():
     made = fed(replace(TIN_CAN, detent_torque=0.0, friction=0.0).parameters(), Chopper(supply=24.0, current=0.24), 16)
-    twin = DrivenStepper(made, ShaftLoad(constant=1e-4), enabled=False)
+    twin = StepperTwin(made, ShaftLoad(constant=1e-4), enabled=False)
     assert twin.run(1.0, every=100).theta[-1] < -4 * made.motor.step_angle
 
 
@@ -73,7 +77,7 @@ def test_microsteps_of_unequal_amplitudes_divide_its_step_electrically():
     stepper = replace(TIN_CAN, detent_torque=0.0, friction=0.0).parameters()
     table = excitation("microstep-4")
     np.testing.assert_allclose(np.hypot(*table.levels.T), 1.0)
-    twin = StepperTwin(stepper, table, 11.0, ShaftLoad(viscous=2e-3))
+    twin = StepperTwin(bridged(stepper, "microstep-4", 11.0), ShaftLoad(viscous=2e-3))
     ends = [float(twin.run(0.3, every=100).theta[-1])]
     for _ in range(4):
         twin.queue(np.array([twin.now]))
