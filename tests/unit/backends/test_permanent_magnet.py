@@ -19,7 +19,7 @@ TIN_CAN = replace(motor("9904-112-35014"), detent_torque=8e-3, friction=1e-3)
 
 def bridged(stepper, mode: str, volts: float):
     """Return a motor behind a bridge without a drop."""
-    return fed(stepper, HBridge(supply=volts, drop=0.0, excitation=mode), 1)
+    return fed(stepper, HBridge(supply=volts, drop=0.0, excitation=mode), excitation(mode).steps_per_full_step)
 
 
 def typed(full_steps: int):
