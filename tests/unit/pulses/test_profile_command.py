@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 from typing import TYPE_CHECKING
 
 import pytest
@@ -11,6 +12,7 @@ from click.testing import CliRunner
 
 from trochia.cli import exit_code
 from trochia.cli.profile import command
+from trochia.cli.sweep import command as sweep_command
 from trochia.errors import TrochiaError
 from trochia.pulses.ramps import RAMPS
 
@@ -24,6 +26,10 @@ MOVE = ("--steps", "400", "--speed", "200 rpm", "--acceleration", "100 rad/s2")
 
 def run(*args: str) -> Result:
     return CliRunner().invoke(command, args)
+
+
+def run_sweep(*args: str) -> Result:
+    return CliRunner().invoke(sweep_command, args)
 
 
 def test_json_has_its_keys():
@@ -110,3 +116,174 @@ def test_what_the_motor_cannot_do(args: tuple[str, ...], words: str):
     assert exit_code(done.exception) == 1
     assert words in str(done.exception)
     assert done.exception.hint
+
+
+SHIELD = ("--motor", "SM-42BYG011-25", "--supply", "12 V", "--friction", "4 mN·m", "--inertia", "100 g·cm²")
+TYPED = ("--motor", "1.7 A, 1.65 ohm, 3.2 mH, 44 N·cm, 68 g·cm²", "--supply", "12 V", "--current", "1 A",
+         "--travel-per-turn", "40 mm", "--mass", "0.5 kg", "--friction", "3 N")  # fmt: skip
+
+
+def test_one_command_tells_all_of_a_motor():
+    done = run(*SHIELD, "--move", "2 turns", "--speed", "150 rpm", "--acceleration", "100 rad/s2")
+    assert done.exit_code == 0
+    for words in ("two-phase, 0.276 A a phase", "A+B+ A-B+ A-B- A+B-", "starts       yes", "follows      yes",
+                  "% left, 30% wanted", "stalls", "no step is lost"):  # fmt: skip
+        assert words in done.stdout
+
+
+def test_a_typed_motor_on_a_belt_in_millimetres():
+    move = ("--move", "100 mm", "--speed", "200 mm/s", "--acceleration", "3000 mm/s2", "--json")
+    told = json.loads(run(*TYPED, *move).stdout)
+    assert told["steps"] == 100 / 40 * 3200
+    assert told["peak_steps_s"] == pytest.approx(200 / 40 * 3200)
+    assert told["acceleration_steps_s2"] == pytest.approx(3000 / 40 * 3200)
+    assert told["time_s"] == pytest.approx(100 / 200 + 200 / 3000)
+    motor = told["motor"]
+    assert (motor["starts"], motor["follows"], motor["twin"]["lost_steps"]) == (True, True, 0)
+    arm = 0.04 / 6.283185307
+    needed = (68e-7 + 0.5 * arm**2) * 3.0 / arm
+    curve = json.loads(run_sweep(*TYPED, "--top", "300 rpm", "--points", "2", "--json").stdout)["curve"][-1]
+    assert 1 - motor["margin"] == pytest.approx(needed / (curve["pull_out_Nm"] - 3.0 * arm), rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("args", "option", "pattern"),
+    [
+        ((*MOVE, "--start-stop", "10 rpm"), "--acceleration", r"acceleration of ([\d.]+) steps/s²"),
+        ((*MOVE, "--start-stop", "10 rpm"), "--acceleration", r"\(([\d.]+) rad/s²\) would do"),
+        ((*MOVE, "--law", "austin", "--start-stop", "10 rpm"), "--acceleration", r"acceleration of ([\d.]+) steps/s²"),
+        ((*MOVE, "--law", "library", "--start-stop", "10 rpm"), "--acceleration", r"([\d.]+) steps/s²"),
+        (
+            ("--steps", "1", "--speed", "999 rpm", "--acceleration", "1e9 steps/s²", "--start-stop", "70 rpm"),
+            "--acceleration",
+            r"acceleration of ([\d.]+) steps/s²",
+        ),
+        ((*MOVE, "--time-box", "0.5 s"), "--time-box", r"\n\s*([\d.]+) s would do"),
+        ((*MOVE, "--time-box", "0.65 s"), "--acceleration", r"([\d.]+) steps/s² \([\d.]+ rad/s²\) up"),
+        ((*MOVE, "--time-box", "0.7 s"), "--time-box", r"acceleration asked for, ([\d.]+) s"),
+        ((*MOVE[:4], "--time-box", "0.65 s", "--start-stop", "20 rpm"), "--time-box", r"\n\s*([\d.]+) s would do"),
+        (("--steps", "9", "--speed", "1e9 rpm", "--acceleration", "1 rad/s2"), "--speed", r"At most ([\d.]+) steps/s"),
+    ],
+)
+def test_the_number_that_is_offered_does(args: tuple[str, ...], option: str, pattern: str):
+    """What a refusal names is typed in, in its unit, and is not refused."""
+    refused = run(*args)
+    assert isinstance(refused.exception, TrochiaError)
+    found = re.search(pattern, str(refused.exception))
+    assert found is not None, str(refused.exception)
+    assert run(*_with(args, option, found.group(1) + _unit(option, pattern))).exit_code == 0
+
+
+@pytest.mark.parametrize(
+    ("args", "option", "pattern"),
+    [
+        ((*MOVE, "--require", "0.7 s"), "--acceleration", r"With ([\d.]+) steps/s²"),
+        ((*MOVE, "--require", "0.7 s", "--law", "austin"), "--acceleration", r"With ([\d.]+) steps/s²"),
+        ((*MOVE, "--require", "2 s"), "--acceleration", r"With ([\d.]+) steps/s²"),
+        (("--steps", "40", *MOVE[2:], "--require-speed", "200 rpm"), "--acceleration", r"With ([\d.]+) steps/s²"),
+        (("--steps", "40", *MOVE[2:], "--require-speed", "200 rpm", "--law", "austin"), "--acceleration",
+         r"With ([\d.]+) steps/s²"),
+        ((*TYPED, "--no-prove", *MOVE[:2], "--speed", "150 rpm", "--acceleration", "20000 rad/s2"), "--acceleration",
+         r"with an acceleration of ([\d.]+) steps/s²"),
+    ],
+)  # fmt: skip
+def test_the_remedy_that_is_told_does(args: tuple[str, ...], option: str, pattern: str):
+    told = run(*args)
+    assert told.exit_code == 1
+    found = re.search(pattern, told.stdout)
+    assert found is not None, told.stdout
+    assert run(*_with(args, option, found.group(1) + _unit(option, pattern))).exit_code == 0
+
+
+def _unit(option: str, pattern: str) -> str:
+    """Return the unit of the number that a pattern takes."""
+    if option == "--acceleration":
+        return " rad/s²" if r") rad/s²\)" in pattern else " steps/s²"
+    return " s" if option == "--time-box" else " steps/s"
+
+
+def _with(args: tuple[str, ...], option: str, value: str) -> tuple[str, ...]:
+    """Return a command with an option set anew."""
+    if option not in args:
+        return (*args, option, value)
+    at = args.index(option)
+    return (*args[: at + 1], value, *args[at + 2 :])
+
+
+def test_overlays_of_accelerations_and_lengths(tmp_path: Path):
+    picture = tmp_path / "two.svg"
+    args = ("--steps", "350", "--steps", "600", "--speed", "190 rpm", "--acceleration", "30 rad/s2", "--acceleration",
+            "60 rad/s2", "--law", "austin", "-o", str(picture), "--json")  # fmt: skip
+    told = json.loads(run(*args).stdout)
+    found = [
+        (one["steps"], round(one["acceleration_steps_s2"] * 2 * 3.14159265 / 200)) for one in [told, *told["others"]]
+    ]
+    assert found == [(350, 30), (350, 60), (600, 30), (600, 60)]
+    assert "350 steps, 60 rad/s2" in picture.read_text(encoding="utf-8") or picture.stat().st_size > 10_000
+
+
+def test_a_chip_s_timer():
+    """At 16 MHz undivided 16 bits hold no less than 244 steps/s; by 8, 30.5: the move's first step is at 39.9."""
+    done = run(*MOVE, "--chip-clock", "16 MHz", "--json")
+    told = {one["division"]: one for one in json.loads(done.stdout)["timer"]}
+    assert [division for division, one in told.items() if one["fits"]] == [8, 64, 256, 1024]
+    assert told[8]["longest_ticks"] == round(16e6 / 8 * (2 * 2 * 3.141592653589793 / 200 / 100) ** 0.5)
+    assert "<- the finest" in run(*MOVE, "--chip-clock", "16 MHz").stdout
+    slow = run("--steps", "9", "--speed", "9 rpm", "--acceleration", "1 rad/s2")
+    assert "does not fit 16 bits" in slow.stdout
+    clock = re.search(r"at most ([\d.]+) kHz", slow.stdout)
+    assert clock is not None
+    fits = run("--steps", "9", "--speed", "9 rpm", "--acceleration", "1 rad/s2", "--clock", f"{clock.group(1)} kHz")
+    assert "does not fit" not in fits.stdout
+
+
+@pytest.mark.parametrize(
+    ("args", "words"),
+    [
+        (("--motor", "QSH5718-56", "--supply", "24 V", *MOVE), "QSH5718-55"),
+        (("--motor", "1.7 A, 1.65 ohm", "--supply", "24 V", *MOVE), "inductance, holding torque, inertia is missing"),
+        (("--motor", "1.7 A, 1.65 ohm, 2 A, 3 mH", "--supply", "24 V", *MOVE), "second current"),
+        (("--motor", "1.7 A, 3 apples", "--supply", "24 V", *MOVE), "3 apples"),
+        (("--motor", "none.toml", "--supply", "24 V", *MOVE), "cannot read none.toml"),
+        (("--motor", "QSH5718-55", "--supply", "24 V", "--mass", "2 kg", *MOVE), "--travel-per-turn"),
+        (("--motor", "QSH5718-55", "--supply", "24 V", "--friction", "2 N", *MOVE), "--travel-per-turn"),
+        (("--motor", "QSH5718-55", "--supply", "24 V", "--steps-per-turn", "77", *MOVE), "not 77"),
+        (("--motor", "QSH5718-55", "--supply", "24 V", "--margin", "100 %", *MOVE), "no torque"),
+        (("--motor", "QSH5718-55", *MOVE), "--supply"),
+        (("--supply", "24 V", *MOVE), "needs the --motor"),
+        (("--prove", *MOVE), "needs a motor"),
+        (("--speed", "9 rpm"), "length of the move"),
+        (("--move", "9 mm", "--speed", "9 rpm"), "--travel-per-turn"),
+    ],
+)
+def test_a_motor_told_wrong(args: tuple[str, ...], words: str):
+    done = run(*args)
+    assert done.exit_code == 2
+    assert words in done.output
+
+
+def test_absurd_catalogue_values_name_what_would_do():
+    """68 kg·cm² typed for g·cm², and what the message offers is taken."""
+    absurd = run(*(arg.replace("68 g·cm²", "68 kg·cm²") for arg in TYPED), "--move", "1 turn", *MOVE[2:])
+    assert isinstance(absurd.exception, TrochiaError)
+    offered = re.search(r"below ([\d.]+(?:e\+\d+)?) g·cm²", str(absurd.exception))
+    assert offered is not None
+    sane = float(offered.group(1)) * 0.9
+    done = run(
+        *(arg.replace("68 g·cm²", f"{sane} g·cm²") for arg in TYPED), "--move", "1 turn", *MOVE[2:], "--no-prove"
+    )
+    assert done.exception is None or isinstance(done.exception, SystemExit)
+
+
+def test_a_file_of_motors(tmp_path: Path):
+    rows = tmp_path / "mine.toml"
+    one = """full_steps = 200\nresistance = "1.65 ohm"\ninductance = "3.2 mH"\ncurrent = "1.7 A"
+holding_torque = "44 N·cm"\ninertia = "68 g·cm²"\nsource = "its label"\nchecked = false\n"""
+    rows.write_text(f"[motors.small]\n{one}", encoding="utf-8")
+    rest = (*TYPED[2:], "--move", "100 mm", "--speed", "200 mm/s", "--acceleration", "3000 mm/s2", "--json")
+    by_file, typed = (json.loads(run("--motor", text, *rest).stdout) for text in (str(rows), TYPED[1]))
+    assert by_file["motor"]["name"].startswith("small")
+    assert by_file["motor"]["margin"] == typed["motor"]["margin"]
+    rows.write_text(f"[motors.small]\n{one}[motors.large]\n{one}", encoding="utf-8")
+    assert "mine.toml:NAME" in run("--motor", str(rows), *rest).output
+    assert run("--motor", f"{rows}:large", *rest).exit_code == 0

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
+from trochia.analysis.stepper_picture import picture
 from trochia.errors import ConfigError, LimitError
 from trochia.pulses.ramps import Demand, Requirement, TorqueCurve, profile, read_curve, verdict
-from trochia.pulses.ramps.picture import picture
 from trochia.pulses.ramps.torque import Pieces, legs
 
 if TYPE_CHECKING:
@@ -134,7 +134,7 @@ def test_a_time_box_too_small_for_the_speed():
 def test_a_time_box_too_small_for_the_acceleration():
     with pytest.raises(LimitError, match="braking in no time at all") as caught:
         profile(replace(MOVE, acceleration=1000.0), time_box=0.65)
-    cure = float(re.search(r"([\d.e+]+) steps/s² .* up and down would do", str(caught.value))[1])
+    cure = float(re.search(r"([\d.e+]+) steps/s² .* up and\s+down would do", str(caught.value))[1])
     assert profile(replace(MOVE, acceleration=cure)).duration == pytest.approx(0.65, rel=1e-3)
 
 

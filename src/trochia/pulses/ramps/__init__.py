@@ -12,7 +12,7 @@ from trochia.errors import LimitError
 from trochia.pulses.ramps import austin, exact, library, linear, torque
 from trochia.pulses.ramps.checks import check_start_stop, check_torque
 from trochia.pulses.ramps.curve import TorqueCurve, read_curve
-from trochia.pulses.ramps.demand import Demand
+from trochia.pulses.ramps.demand import Demand, shown_up
 from trochia.pulses.ramps.profile import COLUMNS, Profile
 from trochia.pulses.ramps.time_box import into_box
 from trochia.pulses.ramps.verdict import Requirement, Verdict, judge
@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
     import numpy as np
     from numpy.typing import NDArray
+
+_LONGER = 250  # times of 2 % more: a hundredfold
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -87,28 +89,58 @@ def profile(demand: Demand, law: str = "exact", *, time_box: float | None = None
     if law not in RAMPS:
         raise LimitError(f"there is no law {law!r}", hint=f"There are {', '.join(RAMPS)}.")
     ramp = RAMPS[law]
-    if time_box is not None:
-        if ramp.by_torque:
-            raise LimitError(
-                f"the law `{law}` goes as fast as it can, which no time box changes",
-                hint="Require a time of it, or put the law `exact` into the box.",
-            )
-        demand = into_box(demand, ramp.duration, time_box)
-    made = Profile(law=law, title=ramp.title, demand=demand, delays=ramp.delays(demand))
+    if time_box is None:
+        return _checked(demand, ramp)
+    if ramp.by_torque:
+        raise LimitError(
+            f"the law `{law}` goes as fast as it can, which no time box changes",
+            hint="Require a time of it, or put the law `exact` into the box.",
+        )
+    boxed = into_box(demand, ramp.duration, time_box)
+    try:
+        return _checked(boxed, ramp)
+    except LimitError as error:
+        time = _least_time(demand, ramp, time_box)
+        if time is None:
+            raise
+        raise LimitError(
+            f"to end in {time_box:g} s, {error.message}",
+            hint=f"{shown_up(time)} s would do, or a motor that starts and speeds up faster.",
+        ) from None
+
+
+def _checked(demand: Demand, ramp: Ramp) -> Profile:
+    """Return a profile that start/stop speed and torque allow."""
+    made = Profile(law=ramp.name, title=ramp.title, demand=demand, delays=ramp.delays(demand))
     if not ramp.by_torque:
         check_torque(demand, made.peak)
     check_start_stop(made, ramp.delays)
     return made
 
 
+def _least_time(demand: Demand, ramp: Ramp, time: float) -> float | None:
+    """Return a time above ``time`` [s], the shortest within 2 %, into which the move goes; None where none is found."""
+    for _ in range(_LONGER):
+        time *= 1.02
+        try:
+            _checked(into_box(demand, ramp.duration, time), ramp)
+        except LimitError:
+            continue
+        return time
+    return None
+
+
 def verdict(made: Profile, requirement: Requirement | None = None) -> Verdict:
     """Return whether a profile meets a requirement, and the remedy where it does not."""
+    law = "exact" if RAMPS[made.law].by_torque else made.law
 
     def better(time: float) -> Profile:
-        law = "exact" if RAMPS[made.law].by_torque else made.law
         return profile(replace(made.demand, acceleration=None, deceleration=None), law, time_box=time)
 
-    return judge(made, requirement, better)
+    def faster(acceleration: float) -> Profile:
+        return profile(replace(made.demand, acceleration=acceleration, deceleration=acceleration), law)
+
+    return judge(made, requirement, better, faster)
 
 
 __all__ = ["COLUMNS", "RAMPS", "Demand", "Profile", "Ramp", "Requirement", "TorqueCurve", "Verdict", "profile",

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from trochia.errors import LimitError
+from trochia.pulses.ramps.demand import floor_to, shown_up
 from trochia.pulses.ramps.torque import refuse_speed
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def check_torque(demand: Demand, peak: float) -> None:
             raise LimitError(
                 f"the {name} of {demand.said_acceleration(wanted)} takes {needed:.4g} N·m for {inertia:g} kg·m², and "
                 f"up to {demand.said(peak)} only {spare:.4g} N·m are left for it",
-                hint=f"At most {demand.said_acceleration(most)} would do, or the law `torque`, made for the curve.",
+                hint=f"At most {demand.at_most_acceleration(most)} would do, or the law `torque`, made for the curve.",
             )
 
 
@@ -66,11 +66,13 @@ def check_start_stop(profile: Profile, delays: Callable[[Demand], NDArray[np.flo
         speed = float(profile.speeds[row])
         if speed > limit * _HAIR:
             if profile.law == "torque":
-                remedy = f"{(speed / limit) ** 2:.3g} times the inertia would do, or the law `exact` with less {cure}."
+                remedy = (
+                    f"{shown_up((speed / limit) ** 2)} times the inertia would do, or the law `exact` with less {cure}."
+                )
             elif (value := _cure(demand, delays, cure, row)) is not None:
-                remedy = f"A{'n' * (not row)} {cure} of {demand.said_acceleration(value)} would do."
+                remedy = f"A{'n' * (not row)} {cure} of {demand.at_most_acceleration(value)} would do."
             else:
-                remedy = f"A lower speed would do: {demand.said(limit)}."
+                remedy = f"A lower speed would do: {demand.at_most(limit)}."
             raise LimitError(
                 f"the {name} step is made at {demand.said(speed)}, above the {demand.said(limit)} at which the motor "
                 f"can {verb}",
@@ -83,15 +85,11 @@ def _cure(demand: Demand, delays: Callable[[Demand], NDArray[np.float64]], key: 
     limit = demand.start_stop or 0.0
     value = demand.rising if key == "acceleration" else demand.falling
     for _ in range(_TRIES):
-        speed = 1.0 / float(delays(replace(demand, **{key: value}))[row])
+        made = delays(replace(demand, **{key: value}))
+        # one acceleration for both ramps must suit both ends
+        speed = 1.0 / float(made[row] if demand.deceleration is not None else min(made[0], made[-1]))
         if speed <= limit * _HAIR:
             return value
         # the speed of the first step goes with the root of the acceleration, that of the last one nearly so
-        value = _floor_to(value * min((limit / speed) ** 2, 0.98))
+        value = floor_to(value * min((limit / speed) ** 2, 0.98))
     return None
-
-
-def _floor_to(value: float, digits: int = 4) -> float:
-    """Return a number rounded down to so many digits, so that what is named does fit."""
-    scale = 10.0 ** (digits - 1 - math.floor(math.log10(value)))
-    return math.floor(value * scale) / scale

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 LONGEST = 1_000_000  #: steps of one move: its table is held whole
 LEAST, MOST = 1e-12, 1e12  #: of every quantity in its unit: what lies outside is a slip of the pen
+_LARGE = 1e15  # beyond it a float has no units to show
 CLOCK = 1e6  #: timer clock unless given [Hz]
 UPDATE = 1e-3  #: longest time between two settings of the speed in the linear law [s]
 
@@ -41,6 +42,8 @@ class Demand:
         Of the timer that counts the delays [Hz].
     update
         Longest time between two settings of the speed, in the linear law [s].
+    travel
+        What a turn moves, where it is to be told [mm].
     """
 
     steps: int
@@ -54,6 +57,7 @@ class Demand:
     inertia: float | None = None
     clock: float = CLOCK
     update: float = UPDATE
+    travel: float | None = None
 
     def __post_init__(self) -> None:
         if not 1 <= self.steps <= LONGEST:
@@ -72,7 +76,7 @@ class Demand:
         if self.speed > self.clock:
             raise LimitError(
                 f"{self.speed:g} steps/s is faster than the timer's clock of {self.clock:g} Hz",
-                hint=f"At most {self.clock:g} steps/s, or a faster clock.",
+                hint=f"At most {self.at_most(self.clock)}, or a faster clock.",
             )
 
     @property
@@ -103,8 +107,47 @@ class Demand:
 
     def said(self, speed: float) -> str:
         """Return a speed [steps/s] as a person reads it."""
-        return f"{speed:.4g} steps/s ({60.0 * speed / self.steps_per_turn:.4g} rpm)"
+        return f"{shown(speed)} steps/s ({self._other(speed, 1)})"
 
     def said_acceleration(self, acceleration: float) -> str:
         """Return an acceleration [steps/s²] as a person reads it."""
-        return f"{acceleration:.4g} steps/s² ({acceleration * self.step_angle:.4g} rad/s²)"
+        return f"{shown(acceleration)} steps/s² ({self._other(acceleration, 2)})"
+
+    def at_most(self, speed: float) -> str:
+        """Return a speed [steps/s] rounded down in every unit, so that what a person types of it is no more."""
+        return f"{shown_down(speed)} steps/s ({self._other(speed, 1, down=True)})"
+
+    def at_most_acceleration(self, acceleration: float) -> str:
+        """Return an acceleration [steps/s²] rounded down in every unit."""
+        return f"{shown_down(acceleration)} steps/s² ({self._other(acceleration, 2, down=True)})"
+
+    def _other(self, value: float, order: int, *, down: bool = False) -> str:
+        """Return a speed or an acceleration (``order`` 1, 2) in the other units."""
+        show = shown_down if down else shown
+        turns = value / self.steps_per_turn
+        angular = f"{show(60.0 * turns)} rpm" if order == 1 else f"{show(value * self.step_angle)} rad/s²"
+        along = "" if self.travel is None else f", {show(turns * self.travel)} mm/s{'²' * (order - 1)}"
+        return angular + along
+
+
+def shown(value: float) -> str:
+    """Return a number with four digits, large ones without an exponent."""
+    rounded = float(f"{value:.4g}")
+    return f"{rounded:.0f}" if 1000.0 <= abs(rounded) < _LARGE else f"{rounded:.4g}"
+
+
+def floor_to(value: float, digits: int = 4) -> float:
+    """Return a number above 0 rounded down to so many digits, so that what is named does fit."""
+    scale = 10.0 ** (digits - 1 - math.floor(math.log10(value)))
+    return math.floor(value * scale * (1.0 + 1e-12)) / scale
+
+
+def shown_down(value: float) -> str:
+    """Return a number as a person reads it, rounded down to four digits."""
+    return shown(floor_to(value)) if value > 0.0 else shown(value)
+
+
+def shown_up(value: float) -> str:
+    """Return a number above 0 as a person reads it, rounded up to four digits."""
+    down = floor_to(value)
+    return shown(down if down >= value else down + 10.0 ** (math.floor(math.log10(value)) - 3))

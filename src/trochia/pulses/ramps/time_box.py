@@ -12,6 +12,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from trochia.errors import LimitError
+from trochia.pulses.ramps.demand import shown_up
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -39,7 +40,7 @@ def into_box(demand: Demand, duration: Callable[[Demand], float], time: float) -
         raise LimitError(
             f"{demand.steps} steps in {time:g} s is {demand.said(demand.steps / time)} all the way, and the speed is "
             f"limited to {demand.said(demand.speed)}",
-            hint=f"More than {shortest:.4g} s, or a motor that runs above {demand.said(demand.steps / time)}.",
+            hint=f"{_in_time(demand)} would do, or a motor that runs well above {demand.said(demand.steps / time)}.",
         )
     if demand.acceleration is None:
         return _solved(lambda a: replace(demand, acceleration=a, deceleration=a), duration, time)
@@ -49,9 +50,17 @@ def into_box(demand: Demand, duration: Callable[[Demand], float], time: float) -
         raise LimitError(
             f"{demand.steps} steps do not end in {time:g} s with an acceleration of "
             f"{demand.said_acceleration(demand.acceleration)}: braking in no time at all they take {best:.4g} s",
-            hint=f"{demand.said_acceleration(alike.rising)} up and down would do; more up allows less down.",
+            hint=f"{shown_up(alike.rising)} steps/s² ({shown_up(alike.rising * demand.step_angle)} rad/s²) up and down "
+            f"would do; with the acceleration asked for, {_in_time(demand)}.",
         )
     return _solved(lambda a: replace(demand, deceleration=a), duration, time)
+
+
+def _in_time(demand: Demand) -> str:
+    """Return a time that is met at this speed: with the acceleration given up and down, else a third each for ramps."""
+    shortest = demand.steps / demand.speed
+    with_ramps = shortest + demand.speed / demand.acceleration if demand.acceleration else 1.5 * shortest
+    return f"{shown_up(with_ramps)} s"
 
 
 def _solved(made: Callable[[float], Demand], duration: Callable[[Demand], float], time: float) -> Demand:

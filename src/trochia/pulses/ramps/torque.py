@@ -157,7 +157,7 @@ def refuse_speed(demand: Demand, reach: float) -> None:
     raise LimitError(
         f"the speed of {demand.said(demand.speed)} is out of reach: under {demand.load:g} N·m the torque curve "
         f"reaches {demand.said(reach)}",
-        hint=f"At most {demand.said(SAFE * reach)} would do ({SAFE:.0%} of it).",
+        hint=f"At most {demand.at_most(SAFE * reach)} would do ({SAFE:.0%} of it).",
     )
 
 
