@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trochia.analysis.sweep.procedures import SETTLE, twin_of
-from trochia.backends.driven_stepper import Levels
-from trochia.backends.stepper_twin import STEP
+from trochia.backends.stepper_twin import STEP, Levels
 
 if TYPE_CHECKING:
     from collections.abc import Callable
