@@ -36,7 +36,7 @@ def motor_row(text: str) -> tuple[str, CatalogueStepper]:
     if "," in text:
         return "typed motor", _of_numbers(text)
     try:
-        return text.rpartition(".toml:")[2], named(text)
+        return text.rpartition(".toml:")[2].rpartition("/")[2], named(text)
     except ConfigError as error:
         if error.source is not None:
             raise
