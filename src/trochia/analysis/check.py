@@ -18,6 +18,7 @@ from trochia.analysis.loops import unstable_problems
 from trochia.analysis.margins import margins
 from trochia.analysis.problems import Problem, Severity, from_error, more_lines
 from trochia.analysis.shaped import warning as shaping_warning
+from trochia.analysis.standstill import DROPS, standstill_problems
 from trochia.analysis.torque import LOST, TorqueUse, lost_step_problems, torque_use
 from trochia.analysis.travel import travel_error
 from trochia.analysis.warmth import heat_problems
@@ -59,7 +60,7 @@ class Verdict:
     def movable(self) -> bool:
         """Whether the twin can run it: there is a plan, and at worst motors that would lose steps."""
         errors = {problem.code for problem in self.problems if problem.severity is Severity.ERROR}
-        return self.plan is not None and errors <= {LOST}
+        return self.plan is not None and errors <= {LOST, DROPS}
 
     @property
     def time_s(self) -> float | None:
@@ -83,6 +84,7 @@ def judge(plan: Plan) -> Verdict:
     problems = [
         *lost_step_problems(plan, uses),
         *heat_problems(plan),
+        *standstill_problems(plan),
         *unstable_problems(plan),
         *servo_problems(plan, servos),
         *missed_problems(plan, servos),

@@ -91,6 +91,7 @@ class PhysicalJoint:
             counts=None if self._counts is None else np.floor(read * self._counts + 1e-6).astype(np.int64),
             load_angle=np.degrees(run.load_angle[keep]),
             lost=run.lost_steps[keep],
+            current=np.hypot(*run.currents[keep].T),
         )
 
     @property

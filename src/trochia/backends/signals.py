@@ -81,6 +81,7 @@ JOINT = (
 PHYSICAL = (
     JointSignal("load_angle", lambda joint: joint.load_angle, "degree", of=lambda joint: joint.fed is not None),
     JointSignal("lost_steps", lambda joint: joint.lost, "step", "<i8", lambda joint: joint.fed is not None),
+    JointSignal("current", lambda joint: joint.current, "A", of=lambda joint: joint.fed is not None),
 )
 CLOSED = (
     JointSignal("measured", lambda joint: joint.measured, of=lambda joint: joint.closed),

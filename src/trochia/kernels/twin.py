@@ -27,8 +27,9 @@ LIMIT = 2**31  #: motor positions and terms of a gearing below this cannot overf
 class TwinBlock:
     """What a joint did over a block, each (samples,); integers where the joint counts them, else None.
 
-    ``load_angle`` [electrical degree] and ``lost`` [full steps] are a physical stepper's; ``measured`` [mm or degree],
-    ``command`` [V], ``current`` [A] and ``torque`` [N·m] are a physical servo's.
+    ``load_angle`` [electrical degree] and ``lost`` [full steps] are a physical stepper's, ``current`` [A] is the length
+    of its phases' currents; ``measured`` [mm or degree], ``command`` [V], ``current`` and ``torque`` [N·m] are a
+    physical servo's.
     """
 
     position: NDArray[np.int64] | None

@@ -118,7 +118,7 @@ class MotionSamples:
     load_joints
         Their names, and the number of the axis each moves most.
     current, current_joints
-        The same of servos that were physics: current of their motors (m, q) [A].
+        The same of motors that were physics: their current (m, q) [A].
     """
 
     time: NDArray[np.float64]

@@ -95,10 +95,24 @@ class Chopper:
         off = -self.fast_part * self.supply * self.off_time
         return (off + self.supply * self.blanking) / (self.off_time + self.blanking)
 
+    def least_current(self, resistance: float) -> float:
+        """Return the current below which it does not hold a phase of so much resistance in all [A]; 0: it holds any.
+
+        In slow decay a current only falls by its own resistance, and the blanking drives it up in every period.  Where
+        both are equal it stays, whatever less is asked: V t_blank/(R (t_off + t_blank)).  Mixed or fast decay pulls it
+        down with the supply.
+        """
+        return max(0.0, self.lowest / resistance)
+
     def loss(self, rms: float, mean: float) -> float:
         """Return its heat for a phase that carries a current, effective and mean magnitude [A], in W."""
         del mean
         return self.on_resistance * rms * rms
+
+    def ripple(self, current: Array, emf: Array, *, resistance: float, inductance: float) -> Array:
+        """Return by how much a current falls in the off time (...) [A]: (R i + e + f V) t_off/L, f its fast part."""
+        falling = resistance * current + emf + self.fast_part * self.supply
+        return self.off_time / inductance * np.maximum(falling, 0.0)
 
     def mean_voltage(
         self, level: Array, current: Array, emf: Array, *, resistance: float, inductance: float, lag: float
@@ -118,8 +132,7 @@ class Chopper:
         """
         sign = np.where(level < 0, -1.0, 1.0)
         wanted = level * self.current
-        falling = resistance * np.abs(wanted) + emf * sign + self.fast_part * self.supply
-        ripple = self.off_time / inductance * np.maximum(falling, 0.0)
+        ripple = self.ripple(np.abs(wanted), emf * sign, resistance=resistance, inductance=inductance)
         target = wanted - np.where(level == 0, 0.0, sign * np.minimum(0.5 * ripple, np.abs(wanted)))
         free = resistance * current + emf + inductance / lag * (target - current)
         low = np.where(current * sign > 0, self.lowest, 0.0)

@@ -128,6 +128,23 @@ class Fed:
         """Greatest torque at rest, with the full current [N·m]."""
         return holding_torque(self.motor, self.excitation, self.current)
 
+    def hold_of(self, part: float) -> float:
+        """Return the torque that holds at rest, in the weakest row of the excitation, with a part of the current [N·m].
+
+        Half the ripple of a chopper is taken off; the detent's torque is not in it, which is all that is left of a
+        driver that switches off at rest.
+        """
+        row = float(np.hypot(*self.excitation.levels.T).min())
+        return self.motor.torque_constant * row * max(0.0, self.current * part - 0.5 * self._ripple(part))
+
+    def _ripple(self, part: float) -> float:
+        """Return the ripple at rest of a part of the current [A]."""
+        if self.chopper is None or part == 0:
+            return 0.0
+        motor, rest = self.motor, np.zeros(())
+        return float(self.chopper.ripple(rest + part * self.current, rest, resistance=motor.resistance,
+                                         inductance=motor.inductance))  # fmt: skip
+
     def pull_out(self, omega: NDArray[np.float64], load: ShaftLoad = FREE) -> NDArray[np.float64]:
         """Return the torque at which the motor falls out of step at shaft speeds (...) [N·m], frictions taken off."""
         return pull_out_torque(self.motor, omega, self.amplitude, current=self.current_amplitude, load=load)
