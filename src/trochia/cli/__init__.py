@@ -27,6 +27,7 @@ COMMANDS = {
     "flash": "Write Trochia's image to a board.",
     "gateway": "Let senders of another protocol drive a machine: GRBL 1.1.",
     "interpolate": "Compare the classic interpolators on a line or an arc.",
+    "excitation": "What each step switches on: levels, field, latch bytes; as a table and a picture.",
     "motors": "The library of real steppers: list, search, show what follows from their numbers.",
     "profile": "A stepper's velocity profile, step by step, and whether it will do.",
     "sweep": "A stepper's torque-speed curve behind its driver, with a program's operating points.",
