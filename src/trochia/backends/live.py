@@ -192,6 +192,19 @@ class Tapped(Protocol):
     tap: Callable[[Ticks], None] | None
 
 
+@runtime_checkable
+class Bounded(Protocol):
+    """A backend whose processor and line bound the steps it can make.
+
+    Attributes
+    ----------
+    bound
+        Name of the board, and its baud rate.
+    """
+
+    bound: tuple[str, int]
+
+
 class SegmentBackend(Protocol):
     """Runs through segments, in its own time.
 

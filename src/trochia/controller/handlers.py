@@ -19,7 +19,7 @@ from trochia.controller.job import Job
 from trochia.controller.jog import Jog
 from trochia.controller.readying import MDI
 from trochia.controller.search import squared
-from trochia.controller.starting import LEAST, begin, check_overrides, plan_here, run_from, start
+from trochia.controller.starting import LEAST, begin, check_overrides, limit_feed, plan_here, run_from, start
 from trochia.controller.states import State
 from trochia.errors import LimitError, LocalProtocolError, OutOfTravelError
 from trochia.messages import command as c
@@ -174,19 +174,20 @@ def override(it: Controller, command: c.Override, _now: float) -> str:
     """Scale feeds, rapids, spindle."""
     given = {name: getattr(command, name) for name in it.overrides.__struct_fields__}
     it.overrides = msgspec.structs.replace(it.overrides, **{n: v for n, v in given.items() if v is not None})
+    told = "" if it.running is None else limit_feed(it, it.running.most)
     if not isinstance(it.activity, Job):
-        return ""
+        return told
     it.activity.doings.spindle = it.overrides.spindle
     if command.spindle is not None:
         it.pending.append(Orders(outputs=dict(it.activity.doings.turning())))
     if it.state not in {State.RUNNING, State.STEPPING, State.RESUMING}:
-        return ""
+        return told
     if min(it.overrides.feed, it.overrides.rapid) < LEAST:
         it.activity.hold(it.report, it.latency)
         it.enter(State.HOLDING)
         return "held: an override is 0"
     it.activity.override(it.report, it.latency, feed=it.overrides.feed, rapid=it.overrides.rapid)
-    return ""
+    return told
 
 
 def jog(it: Controller, command: c.Jog, now: float) -> str:
@@ -205,8 +206,7 @@ def jog(it: Controller, command: c.Jog, now: float) -> str:
     if (end - here) * command.speed <= 0.0:
         raise OutOfTravelError(f"{axis.name} stands at the end of its travel, {end:g} {axis.unit}",
                                hint="Jog the other way.")  # fmt: skip
-    _jog(it, {axis.name: end}, abs(command.speed), now, lease=(axis.name, command.speed, command.lease))
-    return ""
+    return _jog(it, {axis.name: end}, abs(command.speed), now, lease=(axis.name, command.speed, command.lease))
 
 
 def jog_stop(it: Controller, _command: c.JogStop, _now: float) -> str:
@@ -219,8 +219,8 @@ def jog_stop(it: Controller, _command: c.JogStop, _now: float) -> str:
 def jog_by(it: Controller, command: c.JogBy, now: float) -> str:
     """Move axes by a way."""
     here = it.position()
-    _jog(it, {name: here[_axis(it, name).name] + way for name, way in command.way.items()}, command.speed, now)
-    return ""
+    target = {name: here[_axis(it, name).name] + way for name, way in command.way.items()}
+    return _jog(it, target, command.speed, now)
 
 
 def jog_to(it: Controller, command: c.JogTo, now: float) -> str:
@@ -228,8 +228,7 @@ def jog_to(it: Controller, command: c.JogTo, now: float) -> str:
     for name in command.position:
         if not it.trusted[_axis(it, name).name]:
             raise LocalProtocolError(f"nobody knows where {name} is", hint="Home it first.")
-    _jog(it, command.position, command.speed, now)
-    return ""
+    return _jog(it, command.position, command.speed, now)
 
 
 def home(it: Controller, command: c.Home, _now: float) -> str:
@@ -298,7 +297,8 @@ def _axis(it: Controller, name: str) -> Axis:
 def _jog(
     it: Controller, target: dict[str, float], speed: float | None, now: float,
     lease: tuple[str, float, float] | None = None,
-) -> None:  # fmt: skip
+) -> str:  # fmt: skip
+    """Begin a jog; return what is to be told: the board may not do the speed."""
     axes = [_axis(it, name) for name in target]
     if not axes:
         raise LocalProtocolError("a jog names at least one axis")
@@ -318,10 +318,10 @@ def _jog(
     if not feed > 0.0:
         raise LimitError(f"a jog's speed must be above zero, not {feed!r}")
     words = " ".join(f"{name}{value:.9f}" for name, value in target.items())
-    made = it.readier.ready(f"G21 G90 G94 G53 G1 {words} F{60.0 * feed:.9f}\nM2\n", "<jog>", work=it.work.__class__(),
-                            at=it.position(), bounded=False, ours=True)  # fmt: skip
+    made = it.readier.straight(f"G94 G1 {words} F", 60.0 * feed, "<jog>", at=here)
     it.pending.append(Orders(lit=False, watch=()))
     it.begin(Jog(made.plan, it.machine, origin=it.report.executed, ahead=it.ahead, now=now, lease=lease))
+    return f"slowed to {100.0 * made.slowed:.0f} %: the board can make no more steps" if made.slowed < 1.0 else ""
 
 
 HANDLERS: dict[type[c.Command], Handler] = {

@@ -102,9 +102,7 @@ class Home:
             return
         it = self._it
         words = "".join(f" {name}{to:.9f}" for name, to in leg.to.items())
-        line = f"G21 G90 G93 G53 G1{words} F{60.0 / leg.time:.9f}\nM2\n"
-        made = it.readier.ready(line, "<home>", work=it.work.__class__(), at=it.position(), bounded=False,
-                                ours=True)  # fmt: skip
+        made = it.readier.straight(f"G93 G1{words} F", 60.0 / leg.time, "<home>", at=it.position())
         self._feeder = Feeder(LivePlan.of(made.plan.trajectory, it.machine), it.machine,
                               origin=it.report.executed, ahead=it.ahead)  # fmt: skip
         self._leg, self._base = leg, it.report.commanded.copy()

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from trochia.messages import AnyCommand
 
 LONG = 200_000  #: characters of a program that is not planned within a turn: some 10 ms
+JUDGED = 200  #: the same where a board is asked whether it can do it
 _STARTS = Run | Step
 _PROGRAM = Load | Unload | Run | RunFrom | Step  #: commands that stay in their order
 _STOPS = EmergencyStop | Abort | Hold | Disable
@@ -84,7 +85,7 @@ class Preparer:
         if not isinstance(command, Load | _STARTS):
             return False
         name, text = self._text(command)
-        return len(text) >= LONG and not it.readier.knows(
+        return len(text) >= (LONG if it.readier.bound is None else JUDGED) and not it.readier.knows(
             text, name, work=it.work, at=it.position(), block_delete=it.switches.block_delete, exact=_exact(it, command)
         )
 

@@ -11,9 +11,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from trochia.analysis.board import most_feed, room_on
 from trochia.analysis.plan import Plan, make
 from trochia.analysis.travel import travel_error
-from trochia.errors import TrochiaError
+from trochia.backends.avr.busy import MOST_FEED
+from trochia.errors import LimitError, Source, TrochiaError
 from trochia.languages import gcode
 from trochia.languages.gcode.answers import KEPT, Answer, Answers
 from trochia.program import AXES, Action, PathMode, Probe, Program, WaitInput, WorkState
@@ -25,6 +27,8 @@ if TYPE_CHECKING:
 
 MDI = "<mdi>"  #: name of lines that are no program
 EXACT = PathMode.EXACT_STOP
+_SHORT = 2000  #: moves of a program that is planned with other feeds, too: what bounds the others is less
+_TRIES = 4  #: to find a speed that a board can do
 ASKING = Probe | WaitInput  #: actions whose outcome decides how a program goes on
 
 
@@ -42,6 +46,10 @@ class Ready:
         The question at which the program was read no further; None: it comes to its end.
     moves, actions
         How many the whole text has so far; the plan may be of the last of them only.
+    most
+        Greatest override of the feed that the backend can do; below 1 for motion of the controller's own alone.
+    slowed
+        Share of the speed asked for at which motion of the controller's own goes.
     """
 
     plan: Plan
@@ -56,6 +64,8 @@ class Ready:
     asks: Action | None = None
     moves: int = 0
     actions: int = 0
+    most: float = MOST_FEED
+    slowed: float = 1.0
 
     @property
     def asking(self) -> bool:
@@ -70,9 +80,14 @@ class Readier:
     ----------
     reading
         How programs are read; in the machine's dialect where nothing else is said.
+    bound
+        The board that is to do it, and its baud rate; None: whoever moves can do what the machine can.
     """
 
-    def __init__(self, machine: Machine, reading: gcode.Reading | None = None) -> None:
+    def __init__(
+        self, machine: Machine, reading: gcode.Reading | None = None, bound: tuple[str, int] | None = None
+    ) -> None:
+        self.bound = bound
         reading = reading or gcode.Reading()
         self._machine = machine
         self._reading = replace(reading, dialect=reading.dialect or gcode.DIALECTS[machine.dialect])
@@ -137,9 +152,39 @@ class Readier:
         error = travel_error(plan) if bounded and not made.asking else None
         if error is not None:
             raise error
+        if self.bound is not None:
+            made = replace(made, most=self._room(plan, ours=ours))
         if not name.startswith("<"):  # a jog, or a line of the operator's, does not take the program's place
             self._last = made
         return made
+
+    def straight(self, words: str, feed: float, name: str, *, at: dict[str, float]) -> Ready:
+        """Return the plan of a straight move to machine positions, without offsets; slower where the board needs it.
+
+        ``words`` are all but the value of F.
+        """
+
+        def at_share(share: float) -> Ready:
+            text = f"G21 G90 G53 {words}{share * feed:.9f}\nM2\n"
+            return self.ready(text, name, work=WorkState(), at=at, bounded=False, ours=True)
+
+        slowed, made = 1.0, at_share(1.0)
+        for _ in range(_TRIES):
+            if made.most >= 1.0:
+                break
+            slowed *= made.most
+            made = at_share(slowed)
+        return replace(made, slowed=slowed)
+
+    def _room(self, plan: Plan, *, ours: bool) -> float:
+        """Return the greatest override of the feed that the board can do; refuse a program it cannot do at all."""
+        assert self.bound is not None, "there is a board"
+        room = room_on(plan, *self.bound)
+        if room.problem is not None and not ours:
+            raise LimitError(room.problem.message, hint=room.problem.hint,
+                             source=Source(room.problem.file, room.problem.line))  # fmt: skip
+        short = not ours and len(plan.program.moves) <= _SHORT
+        return most_feed(plan, *self.bound, room.most) if short and room.most < MOST_FEED else room.most
 
     def onward(self, made: Ready, answer: Answer, *, at: dict[str, float], exact: bool) -> Ready:
         """Return the plan of what a program does after a question, up to its next one or its end, from ``at``.

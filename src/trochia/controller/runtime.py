@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from trochia.backends.compensated import compensated
-from trochia.backends.live import Orders, Trouble
+from trochia.backends.live import Bounded, Orders, Trouble
 from trochia.controller.controller import Controller
 from trochia.controller.interrupted import draft, interrupted, keep
 from trochia.controller.journal import Journal
@@ -91,11 +91,13 @@ class Runtime:
         work: WorkState | None = None, keep: Path | None = None, logs: Path | None = None,
         reading: Reading | None = None, now: float = 0.0,
     ) -> None:  # fmt: skip
+        bound = backend.bound if isinstance(backend, Bounded) else None
         self.backend = backend = compensated(backend)
         self.controller = Controller(backend.machine, backend.open(now), latency=backend.latency,
                                      ahead=backend.ahead, work=kept_work(keep, work) if keep else work,
                                      reading=reading, title=backend.title)  # fmt: skip
         self.controller.logs = Logs(logs)
+        self.controller.readier.bound = bound
         self._keeper = Keeper(keep, self.controller.work) if keep else None
         self.load = Load()
         self.recorder = Recorder(backend, turn=PERIOD)

@@ -6,8 +6,10 @@ anything moves; what must not be is refused.
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
+import msgspec
 import numpy as np
 
 from trochia.backends.live import Orders
@@ -87,7 +89,7 @@ def begin(it: Controller, text: str, name: str, *, block_by_block: bool) -> str:
 def _go(it: Controller, made: Ready, *, block_by_block: bool, inside: Entry | None = None) -> str:
     """Begin a job of what is planned."""
     it.panel.check_safe(it)
-    told = it.logs.check(made.plan.program.actions)
+    told = [f"{made.plan.time_s:.1f} s", it.logs.check(made.plan.program.actions), limit_feed(it, made.most)]
     options = Options(
         optional_stop=it.switches.optional_stop, block_by_block=block_by_block,
         dark=it.switches.dry_run, feed=it.overrides.feed, rapid=it.overrides.rapid, spindle=it.overrides.spindle,
@@ -102,7 +104,15 @@ def _go(it: Controller, made: Ready, *, block_by_block: bool, inside: Entry | No
         start = dict(zip(AXES, (float(at) for at in made.start), strict=True))
         it.note("job", name=made.name, program=made.text, start=start, work=work_entry(made.found),
                 block_delete=it.switches.block_delete, seconds=made.plan.time_s)  # fmt: skip
-    return f"{made.plan.time_s:.1f} s" + (f"; {told}" if told else "")
+    return "; ".join(text for text in told if text)
+
+
+def limit_feed(it: Controller, most: float) -> str:
+    """Lower the override of the feed to what the board can do; return what to tell, if it was higher."""
+    if it.overrides.feed <= most:
+        return ""
+    it.overrides = msgspec.structs.replace(it.overrides, feed=max(math.floor(100.0 * most) / 100.0, 1.0))
+    return f"feed override limited to {100.0 * it.overrides.feed:.0f} %: the board can make no more steps"
 
 
 def _asked(it: Controller, made: Ready, *, exact: bool = False) -> Ready:

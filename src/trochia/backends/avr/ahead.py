@@ -16,7 +16,7 @@ from trochia.backends.segments import sampled
 from trochia.pulses.steps import CLOCK
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from numpy.typing import NDArray
 
@@ -33,7 +33,14 @@ _INSIDE = np.array([0.02, 0.5, 0.98])  #: where in a row its slew is looked at
 
 
 def spans_ahead(trajectory: Trajectory, machine: Machine, board: str) -> Iterator[Span]:
-    """Yield the spans of a motion.
+    """Yield the spans of a motion; see :func:`spans_of`."""
+    yield from spans_of(rows_of(trajectory), trajectory, machine, board)
+
+
+def spans_of(
+    rows: Iterable[tuple[NDArray[np.float64], bool]], trajectory: Trajectory, machine: Machine, board: str
+) -> Iterator[Span]:
+    """Yield the spans of a stretch of a motion, from tick 0 on, by the times at which its rows begin and end.
 
     Raises
     ------
@@ -49,10 +56,12 @@ def spans_ahead(trajectory: Trajectory, machine: Machine, board: str) -> Iterato
         lambda power: round(255 * min(max(power / full, 0.0), 1.0)), kind.closest,
     )  # fmt: skip
     matrix = machine.kinematics.matrix
-    start = trajectory.position(np.zeros(1))[0] @ matrix.T
-    queue = Queue(start)
-    maker.offset = start.copy()
-    for times, last in _rows(trajectory):
+    queue: Queue | None = None
+    for times, last in rows:
+        if queue is None:
+            start = trajectory.position(times[:1])[0] @ matrix.T
+            queue, maker.offset = Queue(start), start.copy()
+            maker.restart(float(times[0]))
         queue.add(sampled(trajectory, matrix, times, _slews(trajectory, times)), float(times[0]), maker.time(maker.at))
         while last or queue.end - maker.time(maker.at) > LEFT:
             span = maker.make(queue, [], lambda _: 0)
@@ -62,7 +71,7 @@ def spans_ahead(trajectory: Trajectory, machine: Machine, board: str) -> Iterato
         queue.forget(maker.time(maker.at) - ROW)
 
 
-def _rows(trajectory: Trajectory) -> Iterator[tuple[NDArray[np.float64], bool]]:
+def rows_of(trajectory: Trajectory) -> Iterator[tuple[NDArray[np.float64], bool]]:
     """Yield the times at which rows begin, and where the last one ends [s], piece by piece; whether it is the last."""
     kept = np.zeros(0)
     for phases in trajectory.planned_blocks():

@@ -68,7 +68,7 @@ class LiveAvr:
         self.outputs = dict.fromkeys((*BUILT_IN, *self.wiring.outputs), 0.0)
         self.link = Connection(transport, self.board)
         self.transport, self.session, self.latency = transport, self.link.session, self.link.latency
-        self.title = f"{board} {transport.place}"
+        self.title, self.bound = f"{board} {transport.place}", (board, transport.baud)
         self.clock = ChipClock(16_000_000)
         self.inputs = Inputs(self)
         self._queue = Queue(np.zeros(len(self._names)))

@@ -48,6 +48,7 @@ FULL = 0.97  #: of the processor's time
 BENT = 8  #: a stride below it bends often
 CLOSE = 160  #: ticks: one motor that is faster runs all the same
 LEAD = 1 << 16  #: ticks over which figures are told
+_NEAR = 0.005  #: how exactly it is told how much faster spans could be
 BEHIND = 1 << 15  #: ticks by which it may fall behind: it works half as far again ahead
 
 
@@ -106,6 +107,29 @@ class Excess:
     spans: float
 
 
+def faster(spans: list[tuple[float, int, bool]], behind: float, most: float) -> float:
+    """Return how many times as fast, ``most`` at most, those of some spans can be run through that a feed rules.
+
+    Spans are given by their cycles, ticks, and whether it does.
+    """
+
+    def keeps_up(factor: float) -> bool:
+        late = behind
+        for cycles, ticks, feed in spans:
+            late = max(late + cycles / FULL - (ticks / factor if feed else ticks), 0.0)
+            if late > BEHIND:
+                return False
+        return True
+
+    low, high = 0.0, most
+    if keeps_up(most):
+        return most
+    while high - low > _NEAR:
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if keeps_up(middle) else (low, middle)
+    return low
+
+
 class Load:
     """Judges spans as they come.
 
@@ -122,6 +146,8 @@ class Load:
         The greatest and the first excess of each kind.
     busiest
         Greatest part of the processor's time that a stretch has asked for.
+    behind
+        What is still to be done when its time has come [cycles].
     count, steps
         Of spans, and of steps of all motors, so far.
     """
@@ -132,12 +158,12 @@ class Load:
         self.busiest = 0.0
         self.count = self.steps = 0
         self._costs = COSTS[board]
-        self._behind = 0.0  # what is still to be done when its time has come [cycles]
+        self.behind = 0.0
         self._supply = Supply(board, baud)
         self._recent: list[tuple[Span, Asked]] = []  # the last LEAD ticks
 
-    def add(self, span: Span) -> None:
-        """Take the next span."""
+    def add(self, span: Span) -> Asked:
+        """Take the next span; return what it asks."""
         one = asked(span, self._costs)
         self.count, self.steps = self.count + 1, self.steps + one.steps
         self._recent.append((span, one))
@@ -146,11 +172,12 @@ class Load:
         ticks = max(span.end - self._recent[0][0].start, LEAD)
         part = sum(each.cycles for _, each in self._recent) / ticks
         self.busiest = max(self.busiest, part)
-        self._behind = max(self._behind + one.cycles / FULL - (span.end - span.start), 0.0)
-        if self._behind > BEHIND:
+        self.behind = max(self.behind + one.cycles / FULL - (span.end - span.start), 0.0)
+        if self.behind > BEHIND:
             self._note("processor", span.start, max(part / FULL, 1.01))
         self._note("slots", span.start, one.slots)
         self._note(*self._supply.add(span))
+        return one
 
     def _note(self, kind: str, at: int, part: float) -> None:
         """Note an excess, if it is one."""
