@@ -25,14 +25,14 @@ MARGIN = 0.3  #: part of the torque to be left unused, unless said: that of a ma
 GRAVITY = 9.80665  #: [m/s²]
 _LOADS = ("driver", "supply", "current", "series", "excitation", "wiring", "inertia", "friction", "load_torque",
           "travel_per_turn", "mass", "force", "vertical", "efficiency", "margin")  # fmt: skip
-_KINDS = ("h-bridge", "l/r", "chopper", "A4988", "DRV8825", "TMC2209", "L293D")  # those of `machine.drivers.DRIVERS`
+KINDS = ("h-bridge", "l/r", "chopper", "A4988", "DRV8825", "TMC2209", "L293D")  # those of `machine.drivers.DRIVERS`
 _OPTIONS = (
     click.option("-m", "--machine", "machine_name", metavar="MACHINE", help="Machine file, with motor and driver."),
     click.option("--joint", metavar="NAME", help="Its joint; without it the first that names motor and driver."),
     click.option("--motor", metavar="MOTOR", help="In place of a machine: a motor of the library (`trochia motors`), "
                  "my.toml:NAME of your own, or its numbers, "
                  '"1.7 A, 1.65 ohm, 3.2 mH, 44 N·cm, 68 g·cm²" (1.8 degrees a step, if no angle is given).'),
-    click.option("--driver", type=click.Choice(_KINDS, case_sensitive=False), help="What feeds it, or its chip; "
+    click.option("--driver", type=click.Choice(KINDS, case_sensitive=False), help="What feeds it, or its chip; "
                  "chopper where a current is given."),
     click.option("--supply", metavar="VOLTAGE", help='Of the driver, "24 V".'),
     click.option("--current", metavar="CURRENT", help='Of a chopper, "2 A".'),

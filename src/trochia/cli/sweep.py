@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -9,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from trochia.cli import options
-from trochia.cli.motor_options import Asked, asked, motor_options
+from trochia.cli.motor_options import KINDS, Asked, asked, motor_options
 from trochia.cli.tables import table
 from trochia.files import write_whole
 
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from trochia.analysis.sweep import Curve, OperatingPoints
 
 _TIMINGS = ("exact", "millisecond", "shield")  # those of `analysis.sweep.TIMINGS`
+_BESIDES = 5  # curves over the first
 _ROWS = 12  # of the curve on a terminal
 
 
@@ -26,7 +28,8 @@ class _Found:
 
     asked: Asked
     curve: Curve
-    points: OperatingPoints | None
+    points: OperatingPoints | None = None
+    others: tuple[_Found, ...] = ()
 
     def figures(self) -> dict[str, Any]:
         """Return what ``--json`` prints, files apart."""
@@ -40,6 +43,7 @@ class _Found:
             "heat_W": {"motor": warm.motor, "motor_rated": warm.rated, "driver": warm.driver},
             "problems": warm.problems(),
             "program": None if self.points is None else _points_figures(self.points),
+            "others": [one.figures() for one in self.others],
         }
 
 
@@ -48,6 +52,10 @@ class _Found:
 @click.option(
     "--program", type=options.type_program, metavar="PROGRAM", help="Draw the operating points of a program (with -m)."
 )
+@click.option("--also-supply", multiple=True, metavar="VOLTAGE", help='Draw it besides at another supply, "48 V".')
+@click.option("--also-driver", multiple=True, type=click.Choice(KINDS, case_sensitive=False), help="Behind another.")
+@click.option("--also-excitation", multiple=True, metavar="NAME", help="With another excitation.")
+@click.option("--also-motor", multiple=True, metavar="MOTOR", help="Draw another motor behind the same driver.")
 @click.option("--top", metavar="SPEED", help='Greatest speed, "1500 rpm"; else where a fifth of the torque is left.')
 @click.option("--points", type=click.IntRange(2, 500), default=40, show_default=True, help="Speeds of the curve.")
 @click.option(
@@ -71,7 +79,7 @@ def command(*, plot: str | None, csv_file: str | None, as_json: bool, **given: A
 
     Exit code 1 where a program given would lose steps.
 
-    Example: trochia sweep --motor QSH5718-55 --driver chopper --supply "24 V" --current "2.5 A" -o torque.png
+    Example: trochia sweep --motor QSH5718-55 --supply "12 V" --also-supply "24 V" --current "2.5 A" -o torque.png
     """  # fmt: skip
     for option, file in (("--plot", plot), ("--csv", csv_file)):
         if file is not None and not Path(file).parent.is_dir():
@@ -84,14 +92,16 @@ def command(*, plot: str | None, csv_file: str | None, as_json: bool, **given: A
     if plot is not None:
         from trochia.analysis.sweep.picture import picture  # noqa: PLC0415 - it loads matplotlib
 
-        drawn = picture(found.curve, found.asked.title, found.points, margin=found.asked.margin,
+        drawn = picture(found.curve, _title(found.asked), found.points, margin=found.asked.margin,
+                        others=[(_title(one.asked), one.curve) for one in found.others],
                         form=Path(plot).suffix[1:])  # fmt: skip
         write_whole(Path(plot), drawn)
     files = [file for file in (csv_file, plot) if file is not None]
     if as_json:
         options.print_json(found.figures() | {"files": files})
     else:
-        _show(found)
+        for one in (found, *found.others):
+            _show(one)
         for file in files:
             click.echo(f"wrote {file}")
     if found.points is not None and _over(found) > 0:
@@ -101,20 +111,45 @@ def command(*, plot: str | None, csv_file: str | None, as_json: bool, **given: A
 def _find(given: dict[str, Any]) -> _Found:
     """Return the curve and the points that the options ask for."""
     from trochia.analysis.sweep import TIMINGS, curve  # noqa: PLC0415 - `trochia --help` must stay light
+    from trochia.analysis.sweep.curve import FALLEN  # noqa: PLC0415
     from trochia.cli.progress import Progress  # noqa: PLC0415
     from trochia.cli.step_units import speed  # noqa: PLC0415
 
-    wanted = asked(given)
-    motor = wanted.made.motor
+    wanted, *besides = _cases(given)
     top = None
     if given["top"] is not None:
-        top = motor.speed(speed(given["top"], motor.full_steps, "--top"))
+        full = wanted.made.motor.full_steps
+        top = math.tau * speed(given["top"], full, "--top") / full
+    elif besides:
+        top = max(one.made.top(FALLEN) for one in (wanted, *besides))
     with Progress() as progress:
-        made = curve(
-            wanted.made, wanted.load, top=top, points=given["points"], measure=given["measure"],
-            timing=None if given["limits"] is None else TIMINGS[given["limits"]], progress=progress,
+        made, *others = (
+            curve(
+                one.made, one.load, top=top, points=given["points"], measure=given["measure"],
+                timing=None if given["limits"] is None else TIMINGS[given["limits"]], progress=progress,
+            ) for one in (wanted, *besides)
         )  # fmt: skip
-    return _Found(asked=wanted, curve=made, points=_points(wanted, given["program"]))
+    return _Found(
+        asked=wanted, curve=made, points=_points(wanted, given["program"]),
+        others=tuple(_Found(asked=one, curve=found) for one, found in zip(besides, others, strict=True)),
+    )  # fmt: skip
+
+
+def _cases(given: dict[str, Any]) -> list[Asked]:
+    """Return the motor asked for, and what is to be drawn besides, each with one thing changed."""
+    first = asked(given)
+    changes = [(name, value) for name in ("supply", "driver", "excitation", "motor") for value in given[f"also_{name}"]]
+    if changes and first.machine is not None:
+        raise click.UsageError("What is drawn besides a motor of a machine is not known: give --motor and its driver.")
+    if len(changes) > _BESIDES:
+        raise click.UsageError(f"At most {_BESIDES} curves are drawn besides, not {len(changes)}.")
+    return [first, *(asked(given | {name: value}) for name, value in changes)]
+
+
+def _title(one: Asked) -> str:
+    """Return what to call a curve."""
+    mode = one.made.excitation.name
+    return f"{one.title}, {mode}" + (f", {one.made.current:.3g} A" if one.made.driver.current is not None else "")
 
 
 def _points(wanted: Asked, program: str | None) -> OperatingPoints | None:

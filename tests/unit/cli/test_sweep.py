@@ -14,7 +14,13 @@ from trochia.errors import ConfigError
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from click.testing import Result
+
 BIG = ["--motor", "QSH5718-55", "--supply", "24 V", "--current", "2.5 A"]
+
+
+def run(*args: str) -> Result:
+    return CliRunner().invoke(command, args)
 
 
 def test_a_motor_by_its_numbers(tmp_path: Path):
@@ -64,3 +70,38 @@ def test_a_machine_without_a_motor_s_name_is_told_what_to_add():
     result = CliRunner().invoke(command, ["-m", "laser"])
     assert isinstance(result.exception, ConfigError)
     assert "library" in str(result.exception)
+
+
+def test_supplies_and_motors_over_each_other(tmp_path: Path):
+    """Twice the supply drives the full current to some twice the speed; the torque at rest stays."""
+    picture = tmp_path / "both.svg"
+    done = run("--motor", "QSH5718-55", "--supply", "12 V", "--current", "2.5 A", "--also-supply", "24 V",
+               "--also-motor", "QSH5718-79", "-o", str(picture), "--json")  # fmt: skip
+    told = json.loads(done.stdout)
+    twice, stronger = told["others"]
+    assert done.exit_code == 0
+    assert twice["holding_torque_Nm"] == told["holding_torque_Nm"] < stronger["holding_torque_Nm"]
+    assert twice["corner_rpm"] > 2 * told["corner_rpm"]
+    ends = {row["curve"][-1]["speed_rpm"] for row in (told, twice, stronger)}
+    assert len(ends) == 1  # all over the same speeds
+    assert picture.stat().st_size > 10_000
+
+
+def test_measured_torque_has_the_friction_that_is_dragged_along():
+    args = ("--motor", "QSH5718-55", "--supply", "24 V", "--current", "2.5 A", "--top", "120 rpm", "--points", "2",
+            "--friction", "0.05 N·m", "--measure", "--json")  # fmt: skip
+    for row in json.loads(run(*args).stdout)["curve"]:
+        assert row["measured_Nm"] == pytest.approx(row["pull_out_Nm"], rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("args", "words"),
+    [
+        (("-m", "belt-stage", "--also-supply", "48 V"), "give --motor"),
+        (("--motor", "QSH5718-55", "--supply", "9 V", "--current", "1 A", *("--also-supply", "24 V") * 6), "At most 5"),
+    ],
+)
+def test_what_cannot_be_drawn_besides(args: tuple[str, ...], words: str):
+    done = run(*args)
+    assert done.exit_code == 2
+    assert words in done.output

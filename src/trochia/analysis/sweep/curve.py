@@ -24,7 +24,7 @@ from trochia.machine.motors.hybrid import FREE
 from trochia.machine.motors.shaft import ShaftLoad
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
@@ -46,7 +46,7 @@ class Curve:
     speeds, pull_out
         Of the shaft (n,) [rad/s]; torque by closed form, the motor's own frictions taken off (n,) [N·m].
     measured, pull_in
-        On the twin (n,) [N·m], or None where nobody asked.
+        On the twin, the frictions of the load in it (n,) [N·m], or None where nobody asked.
     growth
         Growth rate of a small disturbance (n,) [1/s]: above zero a voltage-fed motor does not run steadily; NaN where a
         current controller feeds it (no such instability) or it does not run.
@@ -133,6 +133,8 @@ def curve(
                 progress("measuring", i / points)
             measured[i] = pull_out_torque_measured(made, speed, bare) if torque[i] > 0 else 0.0
             pull_in[i] = pull_in_torque(made, speed, bare)
+        for found in (measured, pull_in):  # what its own load's frictions take, the motor gives besides
+            found[found > 0] += load.friction + load.viscous * speeds[found > 0]
     return Curve(
         made=made,
         load=load,
@@ -143,7 +145,7 @@ def curve(
         growth=np.array([_growth(made, speed, load) for speed in speeds.tolist()]),
         resonance=math.sqrt(made.motor.teeth * made.holding / (made.motor.inertia + load.inertia)) / math.tau,
         start_stop=_start_stop(made, load),
-        limits={} if timing is None else _limits(made, load, end, timing),
+        limits={} if timing is None else _limits(made, load, end, timing, progress),
     )
 
 
@@ -164,10 +166,20 @@ def _start_stop(made: Fed, load: ShaftLoad) -> float:
         return 0.0
 
 
-def _limits(made: Fed, load: ShaftLoad, end: float, timing: Timing) -> dict[str, float]:
+def _limits(
+    made: Fed, load: ShaftLoad, end: float, timing: Timing, progress: Callable[[str, float], None] | None
+) -> dict[str, float]:
     """Return the greatest speeds without lost steps, in steps of 1 rpm from 20 rpm on."""
     speeds = (np.arange(20.0, 2 * end * RPM) / RPM).tolist()
     return {
-        "pull_out": pull_out_speed(made, speeds, load, timing),
-        "start_stop": start_stop_speed_measured(made, speeds, load, timing),
+        "pull_out": pull_out_speed(made, _told(speeds, "pull-out", progress), load, timing),
+        "start_stop": start_stop_speed_measured(made, _told(speeds, "start/stop", progress), load, timing),
     }
+
+
+def _told(speeds: list[float], label: str, progress: Callable[[str, float], None] | None) -> Iterator[float]:
+    """Yield speeds, telling how far one is; most searches end before the last."""
+    for i, speed in enumerate(speeds):
+        if progress is not None:
+            progress(label, i / len(speeds))
+        yield speed
