@@ -19,7 +19,6 @@ from trochia.analysis.stability import growth_rate
 from trochia.analysis.swing import Swing
 from trochia.errors import LimitError
 from trochia.machine.drivers import heat
-from trochia.machine.motors.curves import start_stop_speed
 from trochia.pulses.ramps import RAMPS, TorqueCurve, profile
 from trochia.pulses.ramps.demand import floor_to
 
@@ -135,7 +134,7 @@ def move_use(made: Profile, shaft: Drive) -> MoveUse:
         available=there,
         used=shaft.used(omega, alpha),
         margin=shaft.margin,
-        start_stop=min(_start_stop(shaft), fastest) / angle,
+        start_stop=shaft.made.start_stop(shaft.load) / angle,
         stalls=fastest / angle,
         usable=min(shaft.greatest_velocity, fastest) / angle,
         hunts=_hunts(shaft, made.peak * angle, angle),
@@ -233,15 +232,6 @@ def _motion(made: Profile, shortest: float) -> tuple[Floats, Floats]:
     after = np.clip(np.searchsorted(middles, middles + 0.5 * shortest), rows + 1, last)
     acceleration = (speeds[after] - speeds[before]) / (middles[after] - middles[before])
     return 0.5 * (speeds[before] + speeds[after]), acceleration
-
-
-def _start_stop(shaft: Drive) -> float:
-    """Return the estimate of the start/stop speed [rad/s]; 0 where it does not start."""
-    made = shaft.made
-    try:
-        return start_stop_speed(made.motor, made.holding, load=shaft.load, step_angle=made.excitation.step_angle)
-    except LimitError:
-        return 0.0
 
 
 def _hunts(shaft: Drive, peak: float, angle: float) -> float | None:

@@ -13,7 +13,6 @@ from trochia.analysis.stepper_proof import prove_move
 from trochia.errors import LimitError
 from trochia.machine.drivers import Chopper, HBridge, fed
 from trochia.machine.motors import ShaftLoad, motor
-from trochia.machine.motors.curves import start_stop_speed
 from trochia.machine.torque import Drive
 from trochia.pulses.ramps import Demand, profile
 
@@ -37,9 +36,7 @@ def test_torque_of_each_part_by_hand():
     assert use.available[middle] == pytest.approx(float(there))
     assert use.left == pytest.approx(1 - (inertia * 500 + 0.1) / float(there), rel=0.01)
     assert use.easy
-    assert use.start_stop * ANGLE == pytest.approx(
-        start_stop_speed(STEPPER, MADE.holding, load=LOAD, step_angle=MADE.excitation.step_angle)
-    )
+    assert use.start_stop * ANGLE == pytest.approx(MADE.start_stop(LOAD))
     assert use.resonance == pytest.approx(16 * math.sqrt(50 * MADE.holding / inertia) / math.tau)
 
 

@@ -19,7 +19,6 @@ from trochia.analysis.sweep.procedures import (
     start_stop_speed_measured,
 )
 from trochia.errors import LimitError
-from trochia.machine.motors.curves import start_stop_speed
 from trochia.machine.motors.hybrid import FREE
 from trochia.machine.motors.shaft import ShaftLoad
 
@@ -144,7 +143,7 @@ def curve(
         pull_in=pull_in,
         growth=np.array([_growth(made, speed, load) for speed in speeds.tolist()]),
         resonance=math.sqrt(made.motor.teeth * made.holding / (made.motor.inertia + load.inertia)) / math.tau,
-        start_stop=_start_stop(made, load),
+        start_stop=made.start_stop(load),
         limits={} if timing is None else _limits(made, load, end, timing, progress),
     )
 
@@ -157,13 +156,6 @@ def _growth(made: Fed, speed: float, load: ShaftLoad) -> float:
         return growth_rate(made.motor, speed, made.amplitude, load)
     except LimitError:
         return math.nan
-
-
-def _start_stop(made: Fed, load: ShaftLoad) -> float:
-    try:
-        return start_stop_speed(made.motor, made.holding, load=load, step_angle=made.excitation.step_angle)
-    except LimitError:
-        return 0.0
 
 
 def _limits(

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, ClassVar, Protocol
 
 import numpy as np
 
-from trochia.errors import ConfigError
+from trochia.errors import ConfigError, LimitError
 from trochia.machine.drivers.chip import Chip, excited
 from trochia.machine.drivers.chopper import Chopper
-from trochia.machine.motors.curves import corner_speed, holding_torque, pull_out_torque
+from trochia.machine.motors.curves import corner_speed, holding_torque, pull_out_torque, start_stop_speed
 from trochia.machine.motors.hybrid import FREE
 
 if TYPE_CHECKING:
@@ -193,6 +193,29 @@ class Fed:
             middle = 0.5 * (low + high)
             low, high = (middle, high) if spare(middle) > 0 else (low, middle)
         return low
+
+    def start_stop(self, load: ShaftLoad = FREE) -> float:
+        """Return an estimate of the highest speed it starts at without a ramp [rad/s]; 0: it does not start.
+
+        That of :func:`start_stop_speed`, with the torque that is left at that very speed: the field turns at it from
+        the first step on, so the currents are already those of its frequency, V/|Z|, while the rotor still stands.
+        The faster, the less torque is left to start with: halving finds the speed that its own torque starts.
+        """
+        ampere = math.inf if self.current_amplitude is None else self.current_amplitude
+
+        def escape(omega: float) -> float:
+            current = min(ampere, self.amplitude / abs(complex(self.motor.impedance(np.array(omega)))))
+            torque = min(self.holding, self.motor.torque_constant * current)
+            try:
+                return start_stop_speed(self.motor, torque, load=load, step_angle=self.excitation.step_angle)
+            except LimitError:
+                return 0.0
+
+        low, high = 0.0, escape(0.0)
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if escape(middle) > middle else (low, middle)
+        return min(low, self.fastest(load))
 
     @property
     def corner(self) -> float | None:
