@@ -63,6 +63,12 @@ def _byte(_context: click.Context, _parameter: click.Parameter, value: str) -> i
     help="Draw levels, currents, and the way of the field.",
 )
 @click.option(
+    "--bridge",
+    type=click.Path(dir_okay=False, writable=True),
+    metavar="FILE.png|FILE.svg",
+    help="Draw a phase's bridge in its states, with the way of the current.",
+)
+@click.option(
     "--csv",
     "csv_file",
     type=click.Path(dir_okay=False, writable=True),
@@ -70,8 +76,8 @@ def _byte(_context: click.Context, _parameter: click.Parameter, value: str) -> i
     help="Write the whole table.",
 )
 @options.as_json
-def command(*, mode: str | None, phases: int, back: bool, image: int, plot: str | None, csv_file: str | None,
-            as_json: bool, **given: Any) -> None:  # noqa: ANN401 - click's  # fmt: skip
+def command(*, mode: str | None, phases: int, back: bool, image: int, as_json: bool,
+            **given: Any) -> None:  # noqa: ANN401 - click's  # fmt: skip
     """Tabulate and draw what each step switches on: levels, terminals, field, the motor shield's latch bytes.
 
     Without MODE the modes there are.
@@ -81,21 +87,23 @@ def command(*, mode: str | None, phases: int, back: bool, image: int, plot: str 
     """  # fmt: skip
     from trochia.pulses.excitation_table import steps_of  # noqa: PLC0415 - `trochia --help` must stay light
 
-    for option, file in (("--csv", csv_file), ("--plot", plot)):
-        if file is not None and not Path(file).parent.is_dir():
-            raise click.BadParameter(f"there is no folder {Path(file).parent}", param_hint=option)
-    if plot is not None and Path(plot).suffix not in {".png", ".svg"}:
-        raise click.BadParameter(f"expected a name that ends in .png or .svg, not {plot}", param_hint="--plot")
+    _check_files(given)
+    if given["bridge"] is not None:
+        from trochia.pulses.bridge_picture import picture  # noqa: PLC0415 - it loads matplotlib
+
+        write_whole(Path(given["bridge"]), picture(Path(given["bridge"]).suffix[1:]))
+    files = [given[name] for name in ("csv_file", "plot", "bridge") if given[name] is not None]
     if mode is None:
-        _modes(as_json=as_json)
+        if given["csv_file"] or given["plot"]:
+            raise click.UsageError("A table and a picture are those of a MODE: name one.")
+        _modes(files, as_json=as_json)
         return
     steps = steps_of(mode, phases=phases, direction=-1 if back else 1)
     found = _currents(mode, phases, given, back=back)
-    if csv_file is not None:
-        write_whole(Path(csv_file), _csv(steps, image).encode())
-    if plot is not None:
-        write_whole(Path(plot), _picture(mode, steps, found, given, Path(plot).suffix[1:]))
-    files = [file for file in (csv_file, plot) if file is not None]
+    if given["csv_file"] is not None:
+        write_whole(Path(given["csv_file"]), _csv(steps, image).encode())
+    if given["plot"] is not None:
+        write_whole(Path(given["plot"]), _picture(mode, steps, found, given, Path(given["plot"]).suffix[1:]))
     if as_json:
         options.print_json({"mode": mode, "phases": phases, "direction": -1 if back else 1,
                             "steps": [_figures(step, image) for step in steps], "files": files,
@@ -111,7 +119,17 @@ def command(*, mode: str | None, phases: int, back: bool, image: int, plot: str 
         click.echo(f"wrote {file}")
 
 
-def _modes(*, as_json: bool) -> None:
+def _check_files(given: dict[str, Any]) -> None:
+    """Refuse files that cannot be written, before anything is worked out."""
+    for option, name in (("--csv", "csv_file"), ("--plot", "plot"), ("--bridge", "bridge")):
+        file = given[name]
+        if file is not None and not Path(file).parent.is_dir():
+            raise click.BadParameter(f"there is no folder {Path(file).parent}", param_hint=option)
+        if file is not None and name != "csv_file" and Path(file).suffix not in {".png", ".svg"}:
+            raise click.BadParameter(f"expected a name that ends in .png or .svg, not {file}", param_hint=option)
+
+
+def _modes(files: list[str], *, as_json: bool) -> None:
     """Print the modes there are."""
     from trochia.pulses.excitation import EXCITATIONS, excitation  # noqa: PLC0415 - `trochia --help` must stay light
 
@@ -119,7 +137,7 @@ def _modes(*, as_json: bool) -> None:
     if as_json:
         figures = [{"mode": mode.name, "steps_per_full_step": mode.steps_per_full_step, "holds_KI": mode.peak,
                     "fundamental": mode.fundamental} for mode in modes]  # fmt: skip
-        options.print_json({"modes": figures})
+        options.print_json({"modes": figures, "files": files})
         return
     cells = [["mode", "steps a full step", "holds, in K I", "fundamental"]]
     cells += [
@@ -127,6 +145,8 @@ def _modes(*, as_json: bool) -> None:
     ]
     click.echo(table(cells))
     click.echo("  microstep-2 to microstep-256; microstep-table is the motor shield's, 17 duty values of 8 bits")
+    for file in files:
+        click.echo(f"wrote {file}")
 
 
 def _currents(mode: str, phases: int, given: dict[str, Any], *, back: bool) -> PhaseCurrents | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,6 +12,7 @@ from click.testing import CliRunner
 
 from trochia.cli.excitation import command
 from trochia.errors import ConfigError, LimitError
+from trochia.pulses.bridge_picture import STATES
 from trochia.pulses.excitation_table import steps_of
 from trochia.pulses.latch import serial_bits
 
@@ -100,6 +102,20 @@ def test_pictures_and_tables_are_written(tmp_path: Path):
     assert svg.read_bytes() == (said("half-step", "--phases", "4", "--back", "-o", str(svg)), svg.read_bytes())[1]
 
 
+def test_the_bridge_is_drawn_and_its_ways_are_kirchhoffs(tmp_path: Path):
+    svg = tmp_path / "bridge.svg"
+    assert f"wrote {svg}" in said("--bridge", str(svg))
+    assert "<svg" in svg.read_text()
+    assert [state.voltage for state in STATES] == ["+V", "-V", "-V", "0"]
+    for state in STATES:
+        halves = [name for name in state.conducting if name[1] in "12"], [n for n in state.conducting if n[1] in "34"]
+        assert [len(half) for half in halves] == [1, 1]  # in by one half, out by the other
+        top = {name[1] in "13" for name in state.conducting}
+        assert len(top) == (1 if state.voltage == "0" else 2)  # from rail to rail, or about one of them
+        for (x0, y0), (x1, y1) in pairwise(state.way):
+            assert (x0 == x1) != (y0 == y1)
+
+
 def test_currents_by_their_numbers():
     found = figures(*RUN)["currents"]
     assert len(found["step"]) == len(found["current_A"]) == 4 * 48
@@ -119,6 +135,8 @@ def test_without_a_mode_the_modes_are_listed():
         (["two-phase", "--image", "xy"], "expected a byte"),
         (["two-phase", "-o", "a.pdf"], "ends in .png or .svg"),
         (["two-phase", "--csv", "no/such/a.csv"], "no folder"),
+        (["--bridge", "a.gif"], "ends in .png or .svg"),
+        (["-o", "a.png"], "those of a MODE"),
         (RUN[:3], "need --motor, --supply and --speed"),
         ([*RUN, "--back"], "runs forwards"),
         ([*RUN, "--phases", "4"], "two phases"),
