@@ -9,7 +9,7 @@ import click
 
 from trochia.cli import options
 from trochia.cli.job import judge
-from trochia.cli.mover import for_board
+from trochia.cli.mover import board_of, for_board
 from trochia.cli.tables import clock, show_verdict
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 @click.option("--all", "show_all", is_flag=True, help="Report every bad line, not only the first.")
 def command(
     *, program: str, machine_name: str, place: dict[str, float], profile: str | None, as_json: bool, reading: Reading,
-    show_all: bool, board: str | None, baud: int,
+    show_all: bool, board: str | None, baud: int | None,
 ) -> None:  # fmt: skip
     """Will it run?  Language, travel, limits; names the first bad line.
 
@@ -31,7 +31,7 @@ def command(
     Example: trochia check part.ngc -m router --at X10Y20
     """
     job = judge(program, machine_name, place, profile, reading=reading, first_only=not show_all,
-                board=board, baud=baud)  # fmt: skip
+                board_of=lambda machine: board_of(machine, board, baud))  # fmt: skip
     if as_json:
         options.print_json(job.verdict.figures())
     else:

@@ -36,8 +36,8 @@ def command() -> None:
 @click.option("--journal", type=click.Path(file_okay=False, path_type=Path), metavar="DIR",
               help="Folder of the machine's journal; without it nothing is kept.")  # fmt: skip
 def grbl(
-    *, machine_name: str, backend: str, port: str | None, baud: int, board: str, tcp: str | None, pty: bool,
-    link: Path | None, public: bool, arm_beam: bool, journal: Path | None,
+    *, machine_name: str, backend: str, port: str | None, baud: int | None, board: str | None, tcp: str | None,
+    pty: bool, link: Path | None, public: bool, arm_beam: bool, journal: Path | None,
 ) -> None:  # fmt: skip
     """Speak GRBL 1.1 for a twin or a board, until Ctrl-C: UGS, CNCjs, bCNC, LaserGRBL, LightBurn can connect.
 

@@ -15,7 +15,7 @@ from trochia.cli.progress import Progress
 from trochia.program import Log, Message, UserCode
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Callable, Iterable, Mapping
 
     from trochia.analysis.check import Verdict
     from trochia.languages.gcode import Reading
@@ -42,12 +42,12 @@ def judge(
     reading: Reading,
     first_only: bool = True,
     tell: bool = True,
-    board: str | None = None,
-    baud: int = 115_200,
+    board_of: Callable[[Machine], tuple[str, int] | None] | None = None,
 ) -> Job:
     """Read the program (``-`` is standard input) and the machine, and judge the one on the other.
 
-    ``tell``: print what the program says; who runs it does that as it says it.  ``board``: whether it can do it, too.
+    ``tell``: print what the program says; who runs it does that as it says it.
+    ``board_of``: the board of the machine, and its baud rate: whether that can do it, too.
     """
     machine = api.load(machine_name)
     name = "<stdin>" if program == "-" else program
@@ -55,11 +55,12 @@ def judge(
         progress("reading", 0.0)
         text = sys.stdin.buffer.read() if program == "-" else Path(program).read_bytes()
         verdict = api.check(text, machine, at=place, name=name, profile=profile, first_only=first_only, reading=reading)
+        board = None if board_of is None else board_of(machine)
         if board is not None and verdict.plan is not None and verdict.ok:
             from trochia.analysis.board import board_problems  # noqa: PLC0415 - only where there is one
 
             progress("the board", 0.0)
-            found = (*verdict.problems, *board_problems(verdict.plan, board, baud))
+            found = (*verdict.problems, *board_problems(verdict.plan, *board))
             worst_first = sorted(found, key=lambda problem: problem.severity is not Severity.ERROR)
             verdict = replace(verdict, problems=tuple(worst_first))
     if tell and verdict.plan is not None:

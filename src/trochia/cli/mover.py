@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from trochia.machine.machine import Machine
 
 PORTED = ("avr", "grbl")  #: backends that are on a serial port
+FIRST, SLOW = "uno-stepdir", 115_200  #: board and baud rate where nothing is said
 OURS = ("avr", "simavr")  #: boards with Trochia's image
 
 
@@ -26,9 +27,10 @@ def mover_options(*kinds: str) -> Callable[[Callable[..., None]], Callable[..., 
     told = {"twin": "the twin", "avr": "a board with Trochia's image", "grbl": "one with GRBL",
             "simavr": "that image on a simulated chip"}  # fmt: skip
     options = (
-        click.option("--board", metavar="BOARD", default="uno-stepdir", show_default=True,
-                     help="Which board it is (--backend avr or simavr)."),
-        click.option("--baud", type=click.IntRange(min=1200), default=115200, show_default=True, help="Its baud rate."),
+        click.option("--board", metavar="BOARD", callback=_or_none,
+                     help="Which board it is (--backend avr or simavr); the machine file's, else uno-stepdir."),
+        click.option("--baud", type=click.IntRange(min=1200),
+                     help="Its baud rate; the machine file's, else 115200."),
         click.option("--port", metavar="DEVICE", help=f"Serial port of a board (--backend {boards})."),
         click.option("--backend", type=click.Choice(kinds), default="twin", show_default=True,
                      help=f"Who moves: {', '.join(told[kind] for kind in kinds)}."),
@@ -55,13 +57,23 @@ def _or_none(_context: click.Context, _parameter: click.Parameter, value: str | 
     return None if value is None else board_named(value)
 
 
+def board_of(machine: Machine, board: str | None, baud: int | None) -> tuple[str, int] | None:
+    """Return the board and its baud rate: what the command line says, else the machine file; None: neither does."""
+    file = machine.board
+    if board is None and file is None:
+        return None
+    own = file is not None and board in {None, file.kind}
+    return board or (file.kind if file else FIRST), baud or (file.baud if file is not None and own else SLOW)
+
+
 def for_board(command: Callable[..., None]) -> Callable[..., None]:
     """Add the options that say for which board to judge; the command gets them as ``board`` and ``baud``."""
     for decorate in (
-        click.option("--baud", type=click.IntRange(min=1200), default=115200, show_default=True,
-                     help="The board's baud rate."),
+        click.option("--baud", type=click.IntRange(min=1200),
+                     help="The board's baud rate; the machine file's, else 115200."),
         click.option("--board", metavar="BOARD", callback=_or_none,
-                     help="Judge whether this board with Trochia's image can run it, too."),
+                     help="Judge whether this board with Trochia's image can run it, too; the machine file's if it "
+                          "names one."),
     ):  # fmt: skip
         command = decorate(command)
     return command
@@ -78,7 +90,7 @@ def check(backend: str, port: str | None, *, virtual: bool = False, kept: bool =
 
 
 def mover(
-    machine: Machine, backend: str, *, port: str | None, baud: int, board: str, virtual: bool = False
+    machine: Machine, backend: str, *, port: str | None, baud: int | None, board: str | None, virtual: bool = False
 ) -> SegmentBackend:
     """Return the twin, or the board on a port or a simulated chip.
 
@@ -94,7 +106,7 @@ def mover(
     if backend in OURS:
         from trochia.backends.avr.live_avr import LiveAvr  # noqa: PLC0415 - only where there is one
 
-        board = board_named(board)
+        board, baud = board_of(machine, board, baud) or (FIRST, baud or SLOW)
         if port is None:
             from trochia.backends.avr.simulator import simulated  # noqa: PLC0415
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from trochia.cli import options
 from trochia.cli.job import judge
-from trochia.cli.mover import for_board
+from trochia.cli.mover import board_of, for_board
 from trochia.cli.tables import clock, show_plan, show_verdict, table
 from trochia.files import write_whole
 from trochia.program.source import SourceText
@@ -36,13 +36,15 @@ _WORTH = 0.0005  #: a limit that binds for less of the time is not worth a line
               help="Write the time of every line, and the limit that binds there longest, to FILE.")  # fmt: skip
 def command(
     *, program: str, machine_name: str, place: dict[str, float], profile: str | None, as_json: bool, reading: Reading,
-    line_count: int, explained: bool, csv_file: Path | None, board: str | None, baud: int,
+    line_count: int, explained: bool, csv_file: Path | None, board: str | None, baud: int | None,
 ) -> None:  # fmt: skip
     """Time, length, extents and per-line timing of a program.
 
     Example: trochia plan part.ngc -m reference-mill --explain
     """
-    job = judge(program, machine_name, place, profile, reading=reading, board=board, baud=baud)
+    job = judge(
+        program, machine_name, place, profile, reading=reading, board_of=lambda machine: board_of(machine, board, baud)
+    )
     plan = job.verdict.plan
     if plan is None or not job.verdict.ok:
         show_verdict(job.verdict)

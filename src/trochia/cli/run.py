@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from trochia.cli import options
-from trochia.cli.mover import board_named, check, clock_of, mover, mover_options
+from trochia.cli.mover import FIRST, OURS, SLOW, board_of, check, clock_of, mover, mover_options
 from trochia.cli.record_options import recording_options, tell_recorded
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ LOOK = 0.1  #: between looks at the status [s]
               help="Folder of the machine's journal; without it nothing is kept.")  # fmt: skip
 def command(
     *, program: str, machine_name: str, place: dict[str, float], profile: str | None, as_json: bool, reading: Reading,
-    backend: str, port: str | None, baud: int, board: str, virtual: bool, yes: bool, journal: Path | None,
+    backend: str, port: str | None, baud: int | None, board: str | None, virtual: bool, yes: bool, journal: Path | None,
     take: Take | None,
 ) -> None:  # fmt: skip
     """Run a program: checked first, homed if need be, then under the controller, to its end.
@@ -50,13 +50,14 @@ def command(
     if backend == "grbl" and port is not None:
         from trochia.cli import run_board  # noqa: PLC0415 - only where there is one
 
-        run_board.run(program, machine_name, place, profile, reading=reading, port=port, baud=baud, yes=yes,
+        run_board.run(program, machine_name, place, profile, reading=reading, port=port, baud=baud or SLOW, yes=yes,
                       as_json=as_json)  # fmt: skip
     from trochia.cli.job import judge, place_of  # noqa: PLC0415 - `trochia --help` must stay light
     from trochia.cli.tables import show_verdict  # noqa: PLC0415
 
     job = judge(program, machine_name, place, profile, reading=reading, tell=False,
-                board=board_named(board) if backend in {"avr", "simavr"} else None, baud=baud)  # fmt: skip
+                board_of=None if backend not in OURS else
+                lambda machine: board_of(machine, board, baud) or (FIRST, baud or SLOW))  # fmt: skip
     if job.verdict.plan is None or not job.verdict.ok:
         if as_json:
             options.print_json(job.verdict.figures())

@@ -57,7 +57,7 @@ def users_option(command: Callable[..., None]) -> Callable[..., None]:
 @click.option("--logs", type=click.Path(file_okay=False, path_type=Path), metavar="DIR",
               help="Folder of the logs that programs write (LOGOPEN, LOG); without it none are kept.")  # fmt: skip
 def command(
-    *, machine_name: str, backend: str, port: str | None, baud: int, board: str, tcp: int, host: str,
+    *, machine_name: str, backend: str, port: str | None, baud: int | None, board: str | None, tcp: int, host: str,
     allow: tuple[str, ...], certificate: Path | None, key: Path | None, users_file: Path | None,
     journal: Path | None, recordings: Path | None, logs: Path | None,
 ) -> None:  # fmt: skip

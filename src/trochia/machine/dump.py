@@ -31,6 +31,7 @@ _TABLES = (
     "beam",
     "probe",
     "panel",
+    "board",
 )  #: records of a machine that are written as tables of their own
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from trochia.machine.axes import LETTERS, PathLimits
+from trochia.machine.board import BoardLink
 from trochia.machine.checks import check
 from trochia.machine.codecs import Flag, Quantity, Text
 from trochia.machine.compensation import Squareness
@@ -107,6 +108,7 @@ class Machine:
     beam: Beam | None = field(default=None, metadata=key(Record(Beam), "a laser or the like"))
     probe: Probe | None = field(default=None, metadata=key(Record(Probe), "a touch probe"))
     panel: Panel | None = field(default=None, metadata=key(Record(Panel), "inputs that guard people"))
+    board: BoardLink | None = field(default=None, metadata=key(Record(BoardLink), "the board that makes its steps"))
     io: tuple[Channel, ...] = field(default=())
 
     def __post_init__(self) -> None:

@@ -10,6 +10,7 @@ import pytest
 
 from trochia.machine.acceleration import CurveOfAcceleration
 from trochia.machine.axes import Axis, PathLimits
+from trochia.machine.board import BoardLink
 from trochia.machine.codecs import Exact, Flag, Number, Quantity, Ratio, Text, Whole
 from trochia.machine.compensation import Compensation, Squareness
 from trochia.machine.drivers import LAWS
@@ -33,7 +34,7 @@ TABLES = {
     "Top of the file": Machine, "path": PathLimits, "axes.X": Axis, "resonance": Resonance,
     "home": Homing, "limit_minus and limit_plus": LimitSwitch, "joints.X": Joint, "encoder": Encoder,
     "pulses": PulseTiming, "spindle": Spindle, "beam": Beam, "io.NAME": Channel, "probe": Probe, "part": Part,
-    "panel": Panel, "compensation": Compensation, "squareness and squareness_error": Squareness,
+    "panel": Panel, "board": BoardLink, "compensation": Compensation, "squareness and squareness_error": Squareness,
     "catalogue": CatalogueStepper, "load": JointLoad,
 } | {f"motor, kind {kind}": cls for kind, cls in MOTORS.items()} | {
     f"transmission, kind {kind}": cls for kind, cls in TRANSMISSIONS.items()
