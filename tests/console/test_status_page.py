@@ -101,7 +101,9 @@ def test_a_viewer_logs_in_sees_it_run_and_stops_it(opened, served):
         has(page, "#who", "ada has control")
         ada.command(Enable())
         ada.command(JogBy(way={"Y": 3.0}))
-        has(page, "#axes tbody tr:nth-child(2) .work", "3.000 mm")
+        has(page, "#axes tbody tr:nth-child(2) .work", "3.000")
+        has(page, "#axes tbody tr:nth-child(2) th", "Ymm")
+        has(page, "#axes tbody tr:nth-child(2) td.known", "yes")
         ada.command(Load(name="square.ngc", text=PROGRAM))
         ada.command(Run())
         has(page, "#state", "running")
@@ -172,6 +174,10 @@ def test_a_phone_shows_it_without_scrolling_sideways_and_stop_stays(opened, sche
     log_in(page)
     has(page, "#state", "off")
     assert page.evaluate("document.documentElement.scrollWidth") <= 360
+    page.evaluate(
+        "status.axes.forEach((axis) => { axis.work = axis.commanded = -123.456; axis.velocity = -123.4; }); draw()"
+    )
+    assert page.evaluate("(table => table.scrollWidth - table.clientWidth)(document.querySelector('.wide'))") <= 0
     page.mouse.wheel(0, 2000)
     box = page.locator("#stop").bounding_box()
     assert 0 <= box["y"] <= 60

@@ -112,19 +112,20 @@ function set(node, text) {
 function axisRow(axis) {
   return (row) => {
     const [name, work, machine, speed, home] = row.children;
-    set(name, axis.name);
-    set(work, `${number(axis.work, 3)} ${axis.unit}`);
+    set(name.children[0], axis.name);
+    set(name.children[1], axis.unit);
+    set(work, number(axis.work, 3));
     set(machine, number(axis.commanded, 3));
     set(speed, number(axis.velocity ?? 0, 1));
-    set(home, axis.trusted ? "known" : "lost");
+    set(home, axis.trusted ? "yes" : "no");
     home.className = axis.trusted ? "known" : "lost";
   };
 }
 
 function newAxisRow() {
-  const head = element("th");
+  const head = element("th", [element("span"), element("span", [], "unit")]);
   head.scope = "row";
-  return element("tr", [head, element("td", [], "work"), element("td"), element("td"), element("td")]);
+  return element("tr", [head, element("td", [], "work"), element("td"), element("td", [], "speed"), element("td")]);
 }
 
 function fact(name, value) {
@@ -177,8 +178,10 @@ function draw() {
   at("request").hidden = !status.request;
   set(at("request"), status.request ? status.request.text : "");
   if (session) {
-    const control = session.control ? "in control" : session.holder ? `${session.holder} has control` : "nobody has control";
-    set(at("who"), `${session.user} (${session.role}), ${control}`);
+    const other = session.holder === session.user ? "in control from another place" : `${session.holder} has control`;
+    const control = session.control ? "in control" : session.holder ? other : "nobody has control";
+    const role = session.user === session.role ? "" : ` (${session.role})`;
+    set(at("who"), `${session.user}${role}, ${control}`);
   }
 }
 
