@@ -19,7 +19,7 @@ from trochia.analysis.stability import growth_rate
 from trochia.analysis.swing import Swing
 from trochia.errors import LimitError
 from trochia.machine.drivers import heat
-from trochia.pulses.ramps import RAMPS, TorqueCurve, profile
+from trochia.pulses.ramps import TorqueCurve, one_acceleration, profile
 from trochia.pulses.ramps.demand import floor_to
 
 if TYPE_CHECKING:
@@ -198,7 +198,7 @@ def easier(made: Profile, shaft: Drive, holds: Callable[[Profile], bool] | None 
 
 def _gentler(made: Profile, shaft: Drive, speed: float, part: float = 1.0) -> Profile | None:
     """Return the move at a speed, as quick as the margin allows and with ``part`` of what was asked at most."""
-    law = "exact" if RAMPS[made.law].by_torque else made.law
+    law = made.law if one_acceleration(made) else "exact"
     demand, angle = made.demand, made.demand.step_angle
     most = float(shaft.acceleration(np.array(speed * angle))) / angle
     rising = min(part * (demand.acceleration or most), most)

@@ -55,7 +55,7 @@ def command(*, csv_file: str | None, plot: str | None, as_json: bool, **given: A
         options.print_json({**first, "others": others, "files": files})
     else:
         for one in found:
-            show(one, asked.motor, asked.chip_clock)
+            show(one, asked.motor, asked.chip_clock, asked.speed)
         for file in files:
             click.echo(f"wrote {file}")
     if not all(one.ok for one in found):

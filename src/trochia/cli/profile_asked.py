@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from trochia.cli.motor_options import Asked
-    from trochia.pulses.ramps import Demand, Requirement
+    from trochia.pulses.ramps import Demand, Profile, Requirement
 
 _LAWS = "exact, austin, linear, library, torque"
 _FILE = click.Path(dir_okay=False, writable=True)
@@ -47,6 +47,9 @@ _OPTIONS = (
                  "--inertia is of rotor and load together."),
     click.option("--prove/--no-prove", default=None,
                  help="Play the move on the twin of the motor; without either, moves of up to 20 s are."),
+    click.option("--against", "measured", multiple=True, type=_AS_CSV, metavar="FILE",
+                 help="Lay over it what a controller made of it: time_s, time_ms or time_us in the first line, then "
+                 "the time of each step."),
     click.option("--time-box", metavar="TIME", help="End in this time: the deceleration is chosen, or both ramps where "
                  "no acceleration is given."),
     click.option("--require", metavar="TIME", help="Judge the profile by this time; without it by the time box."),
@@ -72,6 +75,7 @@ class Wanted:
     speed: float | None
     motor: Asked | None
     prove: bool | None
+    measured: tuple[Profile, ...]
     chip_clock: float | None
 
 
@@ -93,6 +97,7 @@ def wanted(given: dict[str, Any]) -> Wanted:
         For a motor, a driver or a machine that cannot be, and a move that cannot.
     """
     from trochia.pulses.ramps import RAMPS, Requirement  # noqa: PLC0415 - `trochia --help` must stay light
+    from trochia.pulses.ramps.measured import read_times  # noqa: PLC0415
 
     motor = _motor(given)
     scale = _scale(given, motor)
@@ -111,6 +116,14 @@ def wanted(given: dict[str, Any]) -> Wanted:
         speed=_optional(given, "require_speed", scale.speed),
         motor=motor,
         prove=given["prove"],
+        measured=tuple(
+            read_times(
+                path,
+                steps_per_turn=scale.per_turn,
+                clock=step_units.positive(given["clock_text"], "frequency", "--clock"),
+            )
+            for path in given["measured"]
+        ),
         chip_clock=_optional(given, "chip_clock", step_units.positive, "frequency"),
     )
 

@@ -70,10 +70,11 @@ def find(asked: Wanted, progress: Callable[[str, float], None]) -> list[Found]:
     if asked.speed is not None:
         wants = replace(wants or Requirement(), speed=asked.speed)
     found: list[Found] = []
+    made_all: list[Profile] = []
     for demand, law, name in asked.cases:
         made = profile(demand, law, time_box=asked.time_box)
-        if name:
-            made = replace(made, title=f"{made.title}, {name}")
+        made_all.append(replace(made, title=f"{made.title}, {name}") if name else made)
+    for made in (*made_all, *asked.measured):
         judged = verdict(made, wants)
         if asked.motor is None:
             found.append(Found(profile=made, verdict=judged))

@@ -33,18 +33,18 @@ def csv_text(found: Found) -> str:
 
 def json_of(found: Found, motor: Asked | None, chip_clock: float | None) -> dict[str, Any]:
     """Return what was found by JSON's keys; the table is a list of rows."""
-    from trochia.pulses.ramps import RAMPS  # noqa: PLC0415 - `trochia --help` must stay light
+    from trochia.pulses.ramps import one_acceleration  # noqa: PLC0415 - `trochia --help` must stay light
 
     profile, verdict = found.profile, found.verdict
     columns = {key: column.tolist() for key, column in profile.columns().items()}
-    by_torque = RAMPS[profile.law].by_torque
+    even = one_acceleration(profile)
     return {
         "law": profile.law,
         "steps": profile.demand.steps,
         "time_s": profile.duration,
         "peak_steps_s": profile.peak,
-        "acceleration_steps_s2": None if by_torque else profile.demand.rising,
-        "deceleration_steps_s2": None if by_torque else profile.demand.falling,
+        "acceleration_steps_s2": profile.demand.rising if even else None,
+        "deceleration_steps_s2": profile.demand.falling if even else None,
         "ok": found.ok,
         "verdict": {"ok": verdict.ok, "reason": verdict.reason, "remedy": verdict.remedy},
         "motor": None if motor is None else _motor_json(found, motor),
@@ -83,9 +83,9 @@ def _timer_json(profile: Profile, chip_clock: float) -> list[dict[str, Any]]:
     ]  # fmt: skip
 
 
-def show(found: Found, motor: Asked | None, chip_clock: float | None) -> None:
+def show(found: Found, motor: Asked | None, chip_clock: float | None, speed: float | None = None) -> None:
     """Print the first and last rows, the summary, what the motor makes of it, and the verdict."""
-    from trochia.pulses.ramps import COLUMNS, RAMPS  # noqa: PLC0415 - `trochia --help` must stay light
+    from trochia.pulses.ramps import COLUMNS, one_acceleration  # noqa: PLC0415 - `trochia --help` must stay light
 
     profile = found.profile
     demand, columns, size = profile.demand, profile.columns(), profile.delays.size
@@ -102,9 +102,11 @@ def show(found: Found, motor: Asked | None, chip_clock: float | None) -> None:
     reached, held = _parts(profile)
     click.echo(f"  accelerates for {reached} steps, holds {demand.said(profile.peak)} for {held}, "
                f"brakes for {size - reached - held}")  # fmt: skip
-    if not RAMPS[profile.law].by_torque:
+    if one_acceleration(profile):
         click.echo(f"  acceleration {demand.said_acceleration(demand.rising)}, "
                    f"deceleration {demand.said_acceleration(demand.falling)}")  # fmt: skip
+    if speed is not None:
+        _show_reach(profile, speed)
     _show_timer(profile, chip_clock)
     if motor is not None:
         _show_motor(found, motor)
@@ -145,17 +147,28 @@ def _cured(found: Found) -> str:
     return f" The motor does not make that: {why}."
 
 
+def _show_reach(profile: Profile, speed: float) -> None:
+    """Print time and steps to a speed, and from it to rest."""
+    from trochia.pulses.ramps.reach import reach  # noqa: PLC0415 - `trochia --help` must stay light
+
+    found = reach(profile, speed)
+    if found is not None:
+        click.echo(f"  {profile.demand.said(speed)}: reached in {1e3 * found.up_time:.4g} ms, {found.up_steps:.4g} "
+                   f"steps; to rest in {1e3 * found.down_time:.4g} ms, {found.down_steps:.4g} steps")  # fmt: skip
+
+
 def _show_timer(profile: Profile, chip_clock: float | None) -> None:
     """Print whether a timer of 16 bits counts the delays."""
-    from trochia.pulses.ramps.demand import shown  # noqa: PLC0415 - `trochia --help` must stay light
+    from trochia.pulses.ramps.demand import shown, shown_down  # noqa: PLC0415 - `trochia --help` must stay light
     from trochia.pulses.ramps.timer import BITS, best, setting, settings  # noqa: PLC0415
 
     if chip_clock is None:
         one = setting(profile, profile.demand.clock)
         if not one.fits:
             fits = profile.demand.clock * (2**BITS - 1) / one.longest
+            said = f"{shown_down(fits / 1e3)} kHz" if fits >= 1e3 else f"{shown_down(fits)} Hz"
             click.secho(f"  timer: a delay of {one.longest} ticks does not fit {BITS} bits; a clock of at most "
-                        f"{fits / 1e3:.4g} kHz would do", fg="yellow")  # fmt: skip
+                        f"{said} would do", fg="yellow")  # fmt: skip
         return
     chosen = best(profile, chip_clock)
     for one in settings(profile, chip_clock):

@@ -291,3 +291,58 @@ holding_torque = "44 N·cm"\ninertia = "68 g·cm²"\nsource = "its label"\ncheck
     rows.write_text(f"[motors.small]\n{one}[motors.large]\n{one}", encoding="utf-8")
     assert "mine.toml:NAME" in str(run("--motor", str(rows), *rest).exception)
     assert run("--motor", f"{rows}:large", *rest).exit_code == 0
+
+
+def test_a_controller_s_own_times_lie_over_the_theory(tmp_path: Path):
+    """What a table says the steps' times are, read back in milliseconds, is the profile again."""
+    table, times = tmp_path / "table.csv", tmp_path / "times.txt"
+    run(*MOVE, "--csv", str(table))
+    with table.open(encoding="utf-8") as file:
+        rows = [float(row["time_s"]) for row in csv.DictReader(file)]
+    times.write_text("time_ms\n" + "\n".join(f"{1e3 * time:.9g}" for time in rows), encoding="utf-8")
+    told = json.loads(run(*MOVE, "--against", str(times), "-o", str(tmp_path / "over.png"), "--json").stdout)
+    (measured,) = told["others"]
+    assert (measured["law"], measured["steps"], measured["acceleration_steps_s2"]) == ("measured", 400, None)
+    assert measured["time_s"] == pytest.approx(told["time_s"], rel=1e-8)
+    assert measured["peak_steps_s"] == pytest.approx(told["peak_steps_s"], rel=1e-4)
+    assert run(*MOVE, "--against", str(times)).exit_code == 0
+    with_motor = json.loads(run(*SHIELD, *MOVE, "--against", str(times), "--json").stdout)
+    assert with_motor["others"][0]["motor"]["margin"] == pytest.approx(with_motor["motor"]["margin"], abs=0.01)
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "words"),
+    [
+        ("", 1, "time_ms"),
+        ("seconds\n1\n", 1, "time_ms"),
+        ("time_s\n0.1\nx\n", 3, "'x'"),
+        ("time_s\n0.2\n0.2\n", 3, "does not rise"),
+        ("time_s\n", 1, "1 to 1000000"),
+    ],
+)
+def test_times_that_are_none(tmp_path: Path, text: str, line: int, words: str):
+    times = tmp_path / "times.txt"
+    times.write_text(text, encoding="utf-8")
+    refused = run(*MOVE, "--against", str(times)).exception
+    assert isinstance(refused, TrochiaError)
+    assert f"times.txt:{line}" in str(refused)
+    assert words in str(refused)
+
+
+def test_time_and_steps_to_a_speed(tmp_path: Path):
+    """v/a and v²/2a; and, of a published torque curve, the time with the load in it all the way."""
+    done = run(*MOVE, "--require-speed", "100 rpm")
+    assert "reached in 104.7 ms, 17.45 steps; to rest in 104.7 ms, 17.45 steps" in done.stdout
+    curve = tmp_path / "curve.csv"
+    curve.write_text("speed_steps_s,torque_Nm\n100,0.35\n100.000001,0.351\n435,0.09975\n", encoding="utf-8")
+    args = ("--steps", "4000", "--steps-per-turn", "24", "--torque-curve", str(curve), "--load-torque", "0.1 N·m",
+            "--inertia", "2e-4 kg·m²", "--speed", "400 steps/s", "--require-speed")  # fmt: skip
+    assert "reached in 20.94" in run(*args, "100 steps/s").stdout
+    assert "reached in 45.73" in run(*args, "200 steps/s").stdout
+
+
+@pytest.mark.parametrize("law", [name for name in RAMPS if name != "torque"])
+def test_braking_twice_as_hard_takes_half_the_steps(law: str):
+    told = run(*MOVE, "--deceleration", "200 rad/s2", "--law", law, "--require-speed", "199 rpm").stdout
+    up, down = (float(text) for text in re.findall(r"ms, ([\d.]+) steps", told))
+    assert up == pytest.approx(2 * down, abs=2.5)

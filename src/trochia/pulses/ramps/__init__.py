@@ -109,6 +109,11 @@ def profile(demand: Demand, law: str = "exact", *, time_box: float | None = None
         ) from None
 
 
+def one_acceleration(made: Profile) -> bool:
+    """Return whether one acceleration up and one down made it: not torque, and no times that were measured."""
+    return made.law in RAMPS and not RAMPS[made.law].by_torque
+
+
 def _checked(demand: Demand, ramp: Ramp) -> Profile:
     """Return a profile that start/stop speed and torque allow."""
     made = Profile(law=ramp.name, title=ramp.title, demand=demand, delays=ramp.delays(demand))
@@ -132,7 +137,7 @@ def _least_time(demand: Demand, ramp: Ramp, time: float) -> float | None:
 
 def verdict(made: Profile, requirement: Requirement | None = None) -> Verdict:
     """Return whether a profile meets a requirement, and the remedy where it does not."""
-    law = "exact" if RAMPS[made.law].by_torque else made.law
+    law = made.law if one_acceleration(made) else "exact"
 
     def better(time: float) -> Profile:
         return profile(replace(made.demand, acceleration=None, deceleration=None), law, time_box=time)
@@ -143,5 +148,5 @@ def verdict(made: Profile, requirement: Requirement | None = None) -> Verdict:
     return judge(made, requirement, better, faster)
 
 
-__all__ = ["COLUMNS", "RAMPS", "Demand", "Profile", "Ramp", "Requirement", "TorqueCurve", "Verdict", "profile",
-           "read_curve", "verdict"]  # fmt: skip
+__all__ = ["COLUMNS", "RAMPS", "Demand", "Profile", "Ramp", "Requirement", "TorqueCurve", "Verdict", "one_acceleration",
+           "profile", "read_curve", "verdict"]  # fmt: skip
