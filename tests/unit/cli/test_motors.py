@@ -104,7 +104,7 @@ def test_ones_own_file_is_listed_shown_and_swept(tmp_path: Path):
     ("change", "words"),
     [
         (('"2 ohm"', '"-2 ohm"'), ["my.toml:4", 'resistance: must be above zero, not "-2 ohm"']),
-        (('"4 mH"', '"4 H"'), ["my.toml:5", "0.1 to 2e+02 mH would do", "Is it 4 mH, not 4 H?"]),
+        (('"4 mH"', '"4 H"'), ["my.toml:5", "0.1 to 200 mH would do", "Is it 4 mH, not 4 H?"]),
         (('"3 kg-cm"', '"3 N·m"'), ["my.toml:7", "Is it 3 kgf·cm (0.294 N·m)", "not 3 N·m?"]),
         (('"3 kg-cm"', '"42 N·m"'), ["Is it 42 N·cm (0.42 N·m) or 42 oz·in (0.297 N·m), not 42 N·m?"]),
         (('"3 kg-cm"', '"3 kg"'), ["expected a torque with its unit", "kg is a unit of mass"]),

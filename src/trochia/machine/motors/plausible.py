@@ -69,7 +69,7 @@ def _within(name: str, value: float, bounds: tuple[float, float], said: str, num
         return
     dimension, unit, _ = _PRINTED[name]
     factor = units.UNITS[dimension][unit]
-    least, most = (f"{number * bound / value / factor:.2g}" for bound in bounds)
+    least, most = (f"{float(f'{number * bound / value / factor:.2g}'):g}" for bound in bounds)
     raise ConfigError(
         f"cannot be right: {said}",
         key=name,
