@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import replace
 from pathlib import Path
 
 import click
@@ -52,7 +54,7 @@ def test_a_chip_is_named_in_a_machine_file_and_any_figure_overridden(tmp_path: P
         ('{ kind = "A4988", supply = "24 V", current = "1 A" }', 32, ["A4988 has 1, 2, 4, 8, 16", "not 32"]),
         ('{ kind = "A4898", supply = "24 V", current = "1 A" }', 16, ["kind", "A4988"]),
         ('"A4988"', 16, ["driver", 'kind = "A4988"']),
-        ('{ kind = "L293D", supply = "12 V" }', 1, ["15.7 A", "carries 0.6 A"]),
+        ('{ kind = "L293D", supply = "12 V" }', 1, ["15.7 A", "carries 0.6 A", "15.7 ohm a phase or more"]),
     ],
 )
 def test_what_a_chip_cannot_do_is_refused_with_what_it_can(
@@ -71,6 +73,18 @@ def test_a_chip_keeps_the_length_of_the_field_in_every_mode(name: str):
     for microsteps in driver.chip.microsteps:
         levels = fed(SMALL, driver, microsteps).excitation.levels
         assert np.hypot(*levels.T) == pytest.approx(1.0)
+
+
+def test_the_supply_that_a_bridge_is_told_of_keeps_to_its_limit():
+    """12 V through 10 ohm are too much for an L293D; what the hint says is not, nor is a volt more right."""
+    small = replace(SMALL, resistance=10.0)
+    with pytest.raises(MachineError) as caught:
+        fed(small, CHIPS["L293D"](supply=12.0))
+    told = re.search(r"A supply of ([\d.]+) V would do", str(caught.value))
+    assert told
+    assert fed(small, CHIPS["L293D"](supply=float(told[1]))).current == pytest.approx(0.6, abs=1e-3)
+    with pytest.raises(MachineError):
+        fed(small, CHIPS["L293D"](supply=float(told[1]) + 0.1))
 
 
 def test_a_bridge_chip_gives_both_phases_all():

@@ -261,7 +261,17 @@ def _check_current(made: Fed) -> None:
         raise ConfigError(
             f"a phase draws {made.current:.3g} A, the driver carries {limit:g} A",
             key="driver.current_limit",
-            hint=f"A supply of {driver.supply * limit / made.current:.3g} V would do."
-            if driver.current is None
-            else f"A current of {limit:g} A would do.",
+            hint=_would_do(made, limit),
         )
+
+
+def _would_do(made: Fed, limit: float) -> str:
+    """Return what keeps a phase to a driver's limit [A]: a current, a lower supply, or another motor."""
+    driver, resistance = made.driver, made.motor.resistance
+    if driver.current is not None:
+        return f"A current of {limit:g} A would do."
+    supply = limit * resistance + driver.supply - driver.phase_voltage
+    least = driver.chip.supply[0] if driver.chip is not None else 0.0
+    if supply >= least:
+        return f"A supply of {math.floor(100 * supply) / 100:g} V would do."
+    return f"A motor of {made.voltage / limit:.3g} ohm a phase or more would do, or a chopper."
