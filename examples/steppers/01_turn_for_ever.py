@@ -3,24 +3,20 @@
 Mended: nothing but the power switch stops the original; here ``q`` does, and the winding is released.
 """
 
-from terminal import SwitchedOffError, Terminal, run
+from terminal import Terminal, run
 
 from trochia.stepper import FORWARD, SINGLE
 
 
 def sketch(terminal: Terminal) -> None:
     """Run it."""
-    motor = terminal.shield.motor(2, whole_milliseconds=not terminal.options.exact)
+    motor = terminal.motor(2)
     motor.set_speed(20)
     turns = 0
-    try:
-        while True:
-            motor.step(200, FORWARD, SINGLE)
-            turns += 1
-            terminal.say(f"{turns} turns")
-    except SwitchedOffError:
-        motor.release()
-        raise
+    while True:
+        motor.step(200, FORWARD, SINGLE)
+        turns += 1
+        terminal.say(f"{turns} turn{'s' if turns > 1 else ''}")
 
 
 run(sketch, __doc__)

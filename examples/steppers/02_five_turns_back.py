@@ -10,7 +10,7 @@ from trochia.stepper import BACKWARD, DOUBLE
 
 def sketch(terminal: Terminal) -> None:
     """Run it."""
-    motor = terminal.shield.motor(1, whole_milliseconds=not terminal.options.exact)
+    motor = terminal.motor(1)
     motor.set_speed(20)
     while True:
         for turn in range(1, 6):

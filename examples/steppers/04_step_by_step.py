@@ -10,7 +10,7 @@ from trochia.stepper import DOUBLE, FORWARD
 
 def sketch(terminal: Terminal) -> None:
     """Run it."""
-    motor = terminal.shield.motor(1)
+    motor = terminal.motor(1)
     made = 0
     while True:
         for _ in range(200):

@@ -10,7 +10,7 @@ from trochia.stepper import BACKWARD, SINGLE
 
 def sketch(terminal: Terminal) -> None:
     """Run it."""
-    motor = terminal.shield.motor(2, whole_milliseconds=not terminal.options.exact)
+    motor = terminal.motor(2)
     motor.set_speed(20)
     while True:
         for turn in range(1, 6):

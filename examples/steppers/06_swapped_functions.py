@@ -10,7 +10,7 @@ from trochia.stepper import BACKWARD, FORWARD, SINGLE, Calls, Stepper
 
 def sketch(terminal: Terminal) -> None:
     """Run it."""
-    motor = terminal.shield.motor(2)
+    motor = terminal.motor(2)
     swapped = Calls(lambda: motor.onestep(BACKWARD, SINGLE), lambda: motor.onestep(FORWARD, SINGLE))
     stepper = Stepper(swapped, terminal)
     stepper.set_max_speed(150)

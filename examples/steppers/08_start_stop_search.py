@@ -4,26 +4,28 @@ Mended: the original goes on for ever and sees nothing, somebody has to watch; h
 """
 
 from terminal import Terminal, run
-from twin import rig
 
 from trochia.stepper import FORWARD, SINGLE
 
 
 def sketch(terminal: Terminal) -> None:
     """Run it."""
-    output = rig("one-phase")
-    motor = terminal.shield.motor(2, 200, output, whole_milliseconds=not terminal.options.exact)
-    rpm = terminal.options.rpm
+    motor = terminal.motor(2)
+    rpm, lost = terminal.options.rpm, 0
     while True:
         motor.set_speed(rpm)
         motor.step(200, FORWARD, SINGLE)
         motor.release()
         terminal.wait(3)
-        if int(output.settle(terminal.now).lost_steps[-1]):
+        lost = terminal.shield.twins[2].look(terminal.now).lost
+        if lost:
             break
         terminal.say(f"{rpm} rpm")
         rpm += 1
-    terminal.say(f"Steps lost at {rpm} rpm: start/stop speed {rpm - 1} rpm, {200 * (rpm - 1) / 60:.0f} steps/s.")
+    if rpm == terminal.options.rpm:
+        terminal.say(f"{lost} steps lost at the first speed already: begin below {rpm} rpm, by --rpm.")
+    else:
+        terminal.say(f"Steps lost at {rpm} rpm: start/stop speed {rpm - 1} rpm, {200 * (rpm - 1) / 60:.0f} steps/s.")
 
 
 run(sketch, __doc__)

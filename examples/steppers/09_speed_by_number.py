@@ -12,7 +12,7 @@ FASTEST = 1000  # rpm; no such motor turns faster
 
 def sketch(terminal: Terminal) -> None:
     """Run it."""
-    motor = terminal.shield.motor(2, whole_milliseconds=not terminal.options.exact)
+    motor = terminal.motor(2)
     while True:
         terminal.say("Enter Speed")
         typed = terminal.line().strip()
@@ -30,6 +30,7 @@ def sketch(terminal: Terminal) -> None:
             motor.set_speed(abs(rpm))
             motor.step(1000, FORWARD if rpm > 0 else BACKWARD, DOUBLE)
             terminal.say(f"1000 steps {'clockwise' if rpm > 0 else 'counter-clockwise'}, {terminal.now:.3f} s")
+            terminal.say_rotors()
 
 
 run(sketch, __doc__)

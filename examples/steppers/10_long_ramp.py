@@ -15,7 +15,7 @@ STEPS, ASKED, ACCELERATION, MOTOR = 3000, 3000.0, 300.0, 600.0
 
 def sketch(terminal: Terminal) -> None:
     """Run it."""
-    motor = terminal.shield.motor(1)
+    motor = terminal.motor(1)
     stepper = Stepper(Calls(lambda: motor.onestep(1, DOUBLE), lambda: motor.onestep(-1, DOUBLE)), terminal)
     needed, peak = ASKED**2 / (2 * ACCELERATION), math.sqrt(STEPS * ACCELERATION)
     terminal.say(f"{ASKED:g} steps/s needs {needed:.0f} steps to reach; in {STEPS} the peak is {peak:.0f} steps/s")

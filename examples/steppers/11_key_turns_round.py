@@ -11,7 +11,7 @@ from trochia.stepper import BACKWARD, DOUBLE, FORWARD
 
 def sketch(terminal: Terminal) -> None:
     """Run it."""
-    motor = terminal.shield.motor(2, whole_milliseconds=not terminal.options.exact)
+    motor = terminal.motor(2)
     motor.set_speed(100)
     forward = False
     terminal.say("motor_set.")
@@ -23,6 +23,7 @@ def sketch(terminal: Terminal) -> None:
             motor.step(2000, FORWARD if forward else BACKWARD, DOUBLE)
             motor.release()
             terminal.say(f"{'clockwise' if forward else 'counter-clockwise'}, {terminal.now:.3f} s")
+            terminal.say_rotors()
 
 
 run(sketch, __doc__)

@@ -9,6 +9,7 @@ import re
 
 from terminal import Terminal, run
 
+from trochia.errors import LimitError
 from trochia.stepper import DOUBLE, Calls, Stepper
 
 FORM = re.compile(r"S(\d+)A(\d+)D(-?\d+)S")
@@ -21,17 +22,21 @@ def obey(command: str, stepper: Stepper, terminal: Terminal) -> None:
         terminal.say(f"{command!r} is no command like S450A300D800S, speed and acceleration above 0")
         return
     speed, acceleration, target = map(int, form.groups())
+    try:
+        stepper.set_max_speed(speed)
+        stepper.set_acceleration(acceleration)
+        stepper.move_to(target)
+    except LimitError as error:
+        terminal.say(error)
+        return
     terminal.say(f"MAXSPEED = {speed} steps/s")
     terminal.say(f"ACCEL = {acceleration} steps/s²")
     terminal.say(f"DIST = {target} steps{', where it stands' if target == stepper.current_position() else ''}")
-    stepper.set_max_speed(speed)
-    stepper.set_acceleration(acceleration)
-    stepper.move_to(target)
 
 
 def sketch(terminal: Terminal) -> None:
     """Run it."""
-    motor = terminal.shield.motor(2)
+    motor = terminal.motor(2)
     stepper = Stepper(Calls(lambda: motor.onestep(1, DOUBLE), lambda: motor.onestep(-1, DOUBLE)), terminal)
     typed, moving = "", False
     terminal.say("Commands like S450A300D800S")
@@ -47,6 +52,7 @@ def sketch(terminal: Terminal) -> None:
         elif moving:
             moving = False
             terminal.say(f"at {stepper.current_position()}, {terminal.now:.3f} s")
+            terminal.say_rotors()
 
 
 run(sketch, __doc__)

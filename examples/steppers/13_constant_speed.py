@@ -10,7 +10,7 @@ from trochia.stepper import SINGLE, Calls, Stepper
 
 def sketch(terminal: Terminal) -> None:
     """Run it."""
-    motor = terminal.shield.motor(2)
+    motor = terminal.motor(2)
     stepper = Stepper(Calls(lambda: motor.onestep(1, SINGLE), lambda: motor.onestep(-1, SINGLE)), terminal)
     stepper.set_max_speed(150)
     stepper.move_to(1800)

@@ -11,7 +11,7 @@ from trochia.stepper import DOUBLE, Calls, Stepper
 
 def sketch(terminal: Terminal) -> None:
     """Run it."""
-    motor = terminal.shield.motor(2)
+    motor = terminal.motor(2)
     stepper = Stepper(Calls(lambda: motor.onestep(1, DOUBLE), lambda: motor.onestep(-1, DOUBLE)), terminal)
     stepper.set_max_speed(600)
     stepper.set_acceleration(1500)

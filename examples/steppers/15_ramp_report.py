@@ -28,7 +28,7 @@ def sketch(terminal: Terminal) -> None:
         speed = next_speed(speed, STEPS - done, ACCELERATION, ACCELERATION, SPEED)
         time += 1e3 / speed
         terminal.say(f"{time:.2f} {exact(done + 1):.2f}")
-    motor = terminal.shield.motor(2)
+    motor = terminal.motor(2)
     stepper = Stepper(Calls(lambda: motor.onestep(1, DOUBLE), lambda: motor.onestep(-1, DOUBLE)), terminal)
     stepper.set_max_speed(SPEED)
     stepper.set_acceleration(ACCELERATION)

@@ -20,7 +20,7 @@ def sketch(terminal: Terminal) -> None:
     """Run it."""
     plan = plan_move(600, 19.90, 30, 30, angle=ANGLE, clock=CLOCK)
     terminal.say(f"c {plan.shortest:.2f}, c0 {plan.first:.2f}, n {plan.rising}, n1 {plan.limit}, n2 {plan.braking}")
-    motor = terminal.shield.motor(1)
+    motor = terminal.motor(1)
     controller, stored, delay = SpeedController(plan), State.STOP, None
     while True:
         key = terminal.key(wait=True)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import functools
+import itertools
+import math
 import runpy
 import sys
 from pathlib import Path
@@ -12,7 +15,7 @@ import pytest
 
 from trochia.backends.avr.transports import ChipTransport
 from trochia.errors import RemoteProtocolError
-from trochia.stepper import VirtualTime
+from trochia.stepper import BACKWARD, DOUBLE, FORWARD, Calls, PacedTime, Stepper, StepperGroup, VirtualTime
 from trochia.stepper.board import BoardShield
 
 if TYPE_CHECKING:
@@ -36,7 +39,7 @@ def sketch(
         line.edges, shields, typed = [], [], list(keys)
         (script,) = SKETCHES.glob(f"{name}_*.py")
         monkeypatch.syspath_prepend(str(SKETCHES))
-        monkeypatch.setattr(sys, "argv", [str(script), "--pace", "0", "--board", "chip", *options])
+        monkeypatch.setattr(sys, "argv", [str(script), "--pace", "0", "--backend", "avr", "--port", "chip", *options])
         terminal: Any = __import__("terminal")
 
         def listen(self: Any, patience: float | None) -> None:
@@ -75,7 +78,7 @@ def without_repeats(bytes_: list[int]) -> list[int]:
         ("15", (), (), 400),  # a ramp
         ("09", (), ("-300\n",), 1000),  # a speed by number
         ("12", (), ("S450A300D80S",), 80),  # a command
-        ("16", (), tuple("ARDS"), 600),  # the speed controller
+        ("16", (), ("ARDS",), 600),  # the speed controller
     ],
 )
 def test_the_board_makes_what_the_sketch_makes(
@@ -100,3 +103,77 @@ def test_another_board_is_refused(chip_program: Path, board_image: Callable[[str
     with pytest.raises(RemoteProtocolError, match="the board is uno-stepdir, not uno-l293d"):
         BoardShield(VirtualTime(), line)
     line.close()
+
+
+class Walled:
+    """A simulated chip by the wall's clock, as a serial port has it."""
+
+    stride = 0.0
+    place = "on a simulated chip by the wall's clock"
+
+    def __init__(self, line: ChipTransport) -> None:
+        self.line, self.baud = line, line.baud
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.line, name)
+
+
+def test_a_ramp_and_a_rest_on_a_board_by_the_walls_clock(
+    chip_program: Path, board_image: Callable[[str], Path], register: Any
+):
+    """The board turns while the program goes on, and a rest longer than its patience with a silent host is one."""
+    line = ChipTransport(chip_program, board_image("uno-l293d-1000000"))
+    line.edges = []
+    time_ = PacedTime()
+    shield = BoardShield(time_, Walled(line))
+    motor = shield.motor(1)
+    motor.set_speed(60)
+    motor.step(200, FORWARD, DOUBLE)
+    assert sum(edges.size for edges in line.edges) > 200  # type: ignore[attr-defined] - it did not wait for the end
+    time_.wait(2.5)
+    motor.step(20, BACKWARD, DOUBLE)
+    shield.close()
+    register.feed(np.concatenate(line.edges))  # type: ignore[arg-type]
+    assert len([byte for byte in register.bytes if byte]) == 220
+
+
+def test_both_motors_at_once(chip_program: Path, board_image: Callable[[str], Path], register: Any):
+    line = ChipTransport(chip_program, board_image("uno-l293d-1000000"))
+    line.edges = []
+    time_ = VirtualTime()
+    shield = BoardShield(time_, line)
+    steppers: list[Stepper] = []
+    for port in (1, 2):
+        coils = shield.motor(port)
+        calls = Calls(functools.partial(coils.onestep, 1, DOUBLE), functools.partial(coils.onestep, -1, DOUBLE))
+        steppers.append(Stepper(calls, time_))
+        steppers[-1].set_max_speed(600)
+        steppers[-1].set_acceleration(1500)
+    group = StepperGroup(*steppers)
+    group.move_to([400, -300])
+    group.run_to_position()
+    shield.close()
+    register.feed(np.concatenate(line.edges))  # type: ignore[arg-type]
+    steps = {0x1E: 0, 0xE1: 0}  # bits of motor 1 and 2: changes of each
+    for before, after in itertools.pairwise([0, *register.bytes]):
+        for bits in steps:
+            steps[bits] += (before ^ after) & bits != 0 and after & bits != 0
+    assert steps == {0x1E: 400, 0xE1: 300}
+    span = (register.latched[-2][0] - register.latched[1][0]) / 16e6
+    assert span == pytest.approx(time_.now - math.sqrt(2 / 1500), abs=0.02)
+
+
+def test_a_halt_stops_at_once_and_releases(chip_program: Path, board_image: Callable[[str], Path], register: Any):
+    line = ChipTransport(chip_program, board_image("uno-l293d-1000000"))
+    line.edges = []
+    time_ = VirtualTime()
+    shield = BoardShield(time_, line)
+    motor = shield.motor(1)
+    motor.set_speed(60)
+    motor.step(500, FORWARD, DOUBLE)  # 2.5 s, of which the board still has the last
+    shield.halt()
+    shield.close()
+    register.feed(np.concatenate(line.edges))  # type: ignore[arg-type]
+    made = len([byte for byte in register.bytes if byte])
+    assert 300 < made < 500
+    assert register.bytes[-1] == 0

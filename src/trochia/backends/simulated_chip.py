@@ -99,7 +99,7 @@ class SimulatedChip:
         try:
             self._process = subprocess.Popen(  # noqa: S603 - a program of our own, arguments as a list
                 [program, image, mcu, str(frequency)], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                stderr=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL, start_new_session=True,  # Ctrl-C is ours: the chip is to be halted first
             )  # fmt: skip
         except OSError as error:
             raise LinkError(f"the simulated chip {program} cannot be started: {error.strerror}") from error

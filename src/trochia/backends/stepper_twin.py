@@ -144,6 +144,10 @@ class StepperTwin:
         """Change the load from here on."""
         self._kernel.set_motor(_motor(self.made.motor, load, self._coupling), _behind(load, self._coupling))
 
+    def set_levels(self, levels: NDArray[np.float64]) -> None:
+        """Excite by another table of as many rows from here on (rows, 2); the field's angles stay the excitation's."""
+        self._kernel.set_levels(levels)
+
     def set_enabled(self, enabled: bool) -> None:  # noqa: FBT001 - the one switch
         """Switch the phases on, or release them: held, shorted or open, as the driver does."""
         on = enabled or self.made.driver.released == "hold"

@@ -154,6 +154,12 @@ class StepperKernel:
         _fill(self._motor, motor)
         _fill(self._coupling, coupling)
 
+    def set_levels(self, levels: NDArray[np.float64]) -> None:
+        """Change the table of levels (rows, 2) from here on, with as many rows as before."""
+        if levels.shape != self._levels.shape or not np.isfinite(levels).all():
+            raise ValueError(f"expected finite levels of shape {self._levels.shape}, not {levels.shape}")
+        self._levels = np.ascontiguousarray(levels, np.float64)
+
     def set_driver(self, driver: DriverConstants) -> None:
         """Change the driver from here on."""
         _fill(self._driver, driver)

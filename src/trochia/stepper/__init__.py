@@ -19,9 +19,11 @@ from trochia.stepper.shield import (
     ShieldMotor,
     Style,
 )
+from trochia.stepper.shield_twin import Rotor, ShieldTwin
 from trochia.stepper.times import PacedTime, Time, VirtualTime
 
 __all__ = [
-    "BACKWARD", "DOUBLE", "FORWARD", "INTERLEAVE", "MICROSTEP", "SINGLE", "Calls", "Kept", "PacedTime", "Shield",
-    "ShieldMotor", "StepOutput", "Stepper", "StepperGroup", "Style", "Time", "TwinOutput", "VirtualTime",
+    "BACKWARD", "DOUBLE", "FORWARD", "INTERLEAVE", "MICROSTEP", "SINGLE", "Calls", "Kept", "PacedTime", "Rotor",
+    "Shield", "ShieldMotor", "ShieldTwin", "StepOutput", "Stepper", "StepperGroup", "Style", "Time", "TwinOutput",
+    "VirtualTime",
 ]  # fmt: skip

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     from trochia.backends.stepper_twin import StepperRun, StepperTwin
 
+KEPT = 50  #: time steps from one kept sample to the next: a millisecond
 _BLOCK = 256  # steps handed to the twin at once
 
 
@@ -71,10 +72,23 @@ class Calls:
 
 
 class TwinOutput:
-    """The twin of a motor: its physics follow the steps, and lose some where the real motor would."""
+    """The twin of a motor: its physics follow the steps, and lose some where the real motor would.
 
-    def __init__(self, twin: StepperTwin) -> None:
+    Parameters
+    ----------
+    keep
+        Keep what the motor does every millisecond, for a picture.
+
+    Attributes
+    ----------
+    kept
+        What was kept, in pieces.
+    """
+
+    def __init__(self, twin: StepperTwin, *, keep: bool = False) -> None:
         self.twin = twin
+        self.kept: list[StepperRun] = []
+        self._keep = keep
         self._moments: list[float] = []
         self._directions: list[int] = []
 
@@ -97,16 +111,20 @@ class TwinOutput:
     def settle(self, moment: float, *, every: int = 1) -> StepperRun:
         """Let the twin go on to a moment [s], and return what it did since it was last looked at."""
         self._hand_over()
-        return self.twin.run(max(moment - self.twin.now, 0.0), every=every)
+        run = self.twin.run(max(moment - self.twin.now, 0.0), every=KEPT if self._keep else every)
+        if self._keep and run.time.size:
+            self.kept.append(run)
+        return run
 
     def lost_steps(self, moment: float) -> int:
         """Return the full steps lost so far, the rotor given a quarter second of rest after ``moment`` [s]."""
-        return int(self.settle(moment + 0.25).lost_steps[-1])
+        self.settle(moment + 0.25)
+        return int(self.twin.run_ticks(1).lost_steps[-1])
 
     def _go_on(self, moment: float) -> None:
         """Let the twin go on to a moment, if it is still to come."""
         if moment > self.twin.now:
-            self.twin.run(moment - self.twin.now, every=1_000_000)
+            self.settle(moment, every=1_000_000)
 
     def _hand_over(self) -> None:
         """Queue what is waiting."""

@@ -18,6 +18,7 @@ from trochia.stepper import checks
 
 if TYPE_CHECKING:
     from trochia.stepper.outputs import StepOutput
+    from trochia.stepper.shield_twin import ShieldTwin
     from trochia.stepper.times import Time
 
 FORWARD, BACKWARD = 1, -1
@@ -56,6 +57,8 @@ class Shield:
     ----------
     image
         Its byte.
+    twins
+        By port: what the motors make of their steps, where somebody put them there.
     latched
         When it was loaded [s] and with what, the last few thousand times.
     """
@@ -63,6 +66,7 @@ class Shield:
     def __init__(self, time: Time) -> None:
         self.time = time
         self.image = 0
+        self.twins: dict[int, ShieldTwin] = {}
         self.latched: deque[tuple[float, int]] = deque(maxlen=_KEPT)
 
     def motor(self, port: int, steps_per_turn: int = 200, output: StepOutput | None = None, *,
@@ -70,11 +74,15 @@ class Shield:
         """Return the motor on port 1 or 2; errors as of :class:`ShieldMotor`."""
         return ShieldMotor(self, port, steps_per_turn, output, whole_milliseconds=whole_milliseconds)
 
-    def stepped(self, port: int, moment: float, direction: int, style: Style) -> None:
-        """Take notice of a motor's step; a shield on a board has it made."""
+    def stepped(self, port: int, moment: float, position: int, direction: int, style: Style) -> None:
+        """Have a motor's step made: by its twin, and by a board where the shield is on one."""
+        if port in self.twins:
+            self.twins[port].excite(moment, position, direction, style)
 
     def released(self, port: int, moment: float) -> None:
-        """Take notice of a motor's release."""
+        """Have a motor released."""
+        if port in self.twins:
+            self.twins[port].release(moment)
 
     def latch(self, moment: float, byte: int) -> None:
         """Load the register at a moment [s]."""
@@ -160,7 +168,7 @@ class ShieldMotor:
         self.position = style.after(self.position, direction) % _TURN
         row = _MICRO[self.position] if style is MICROSTEP else _HALF[self.position // _SECTOR]
         self._drive(at, (float(row[0]), float(row[1])))
-        self.shield.stepped(self.port, at, direction, style)
+        self.shield.stepped(self.port, at, self.position, direction, style)
         if self.output is not None:
             if self._released:  # a step puts the windings on again
                 self.output.energise(at, on=True)

@@ -6,6 +6,7 @@ import os
 import pty
 import re
 import select
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -14,6 +15,7 @@ import pytest
 
 SKETCHES = Path(__file__).parents[3] / "examples" / "steppers"
 NUMBERED = sorted(SKETCHES.glob("[0-9][0-9]_*.py"))
+CTRL_C = "\x03"
 PATIENCE = 60.0  # s without a word from a sketch
 
 Dialogue = list[tuple[str, str]]
@@ -40,7 +42,10 @@ def converse(name: str, dialogue: Dialogue, *options: str) -> str:
                     seen += part.decode().replace("\r\n", "\n")
                 if found:
                     heard += found.end()
-                    os.write(ours, answer.encode())
+                    if answer == CTRL_C:  # it is no controlling terminal, which would make this of it
+                        process.send_signal(signal.SIGINT)
+                    else:
+                        os.write(ours, answer.encode())
         finally:
             os.close(ours)
             process.wait(timeout=PATIENCE)
@@ -63,7 +68,7 @@ def test_a_sketch_says_what_was_mended(script: Path):
 @pytest.mark.parametrize(
     ("name", "seconds", "expected"),
     [
-        ("01", "7", "1 turns\n2 turns\nSwitched off after 7.005 s."),
+        ("01", "7", "1 turn\n2 turns\nSwitched off after 7.005 s."),
         ("02", "29", "turn 5, released: windings shorted, register 00\nturn 1, released"),
         ("03", "18", "SINGLE: 180 degrees and back\nDOUBLE: 180 degrees and back"),
     ],
@@ -78,7 +83,7 @@ def test_interleave_turns_half_as_far():
 
 def test_one_that_is_switched_off_by_hand():
     said = converse("01", [("2 turns", "q")])
-    assert re.search(r"Switched off after \d+", said)
+    assert re.search(r"Stopped and released after \d+", said)
 
 
 @pytest.mark.parametrize(
@@ -86,7 +91,7 @@ def test_one_that_is_switched_off_by_hand():
 )
 def test_reset_repeats(name: str, word: str, again: str):
     said = converse(name, [(word, ""), ("r repeats", "xr"), (again, ""), ("r repeats", "q")])
-    assert "Switched off" in said
+    assert "Stopped and released" in said
 
 
 @pytest.mark.parametrize(
@@ -112,6 +117,58 @@ def test_the_searches_end_where_the_motor_does(name: str, kind: str, first: str)
     assert int(first) < found[0] < found[1] <= 300
 
 
+def test_a_first_speed_that_is_too_fast_is_no_limit_found():
+    said = converse("07", [], "--rpm", "400")
+    assert re.search(r"\d+ steps lost at the first speed already: begin below 400 rpm", said)
+    assert "pull-out speed" not in said
+
+
+def test_the_rotor_is_told_of():
+    """1000 steps back in whole milliseconds at 300 rpm, from rest: the twin cannot follow, and that is told."""
+    said = converse("09", [("Enter Speed", "60\n"), ("no steps lost", "-300\n"), (r"-\d+ steps lost", "q")])
+    assert "rotor at 1799." in said.replace("1800.", "1799.")
+    assert re.search(r"of 0\.0 degrees|of -?0\.9 degrees", said)
+
+
+def test_ctrl_c_stops_and_releases():
+    said = converse("01", [("1 turn", CTRL_C)], "--pace", "200")
+    assert "Stopped and released after" in said
+    assert "Traceback" not in said
+
+
+def test_what_is_typed_is_shown_and_taken_back():
+    said = converse("09", [("Enter Speed", "6x\x7f0\n"), ("1000 steps clockwise", "q")])
+    assert "6x" in said
+
+
+@pytest.mark.parametrize(
+    ("options", "expected"),
+    [
+        (("--pace", "-1"), "--pace must be 0 or more"),
+        (("--pace", "nan"), "--pace must be 0 or more"),
+        (("--seconds", "0"), "--seconds must be more than 0"),
+        (("--rpm", "0"), "--rpm must be from 1 to 1000"),
+        (("--port", "/dev/x"), "go together"),
+        (("--backend", "simavr", "--pace", "0.5"), "real time"),
+        (("--backend", "avr", "--port", "/dev/not-there"), "/dev/not-there is not there"),
+        (("--picture", "/not/there/p.png", "--seconds", "0.1"), "/not/there"),
+    ],
+)
+def test_options_that_cannot_be_are_named(options: tuple[str, ...], expected: str):
+    done = subprocess.run(
+        [sys.executable, str(NUMBERED[0]), "--pace", "0", *options],
+        capture_output=True, text=True, check=False, input="", timeout=PATIENCE,
+    )  # fmt: skip
+    assert done.returncode in {1, 2}
+    assert expected in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_a_picture_of_what_ran(tmp_path: Path):
+    assert "Drawn to" in converse("14", [], "--picture", str(tmp_path / "ramp.png"))
+    assert (tmp_path / "ramp.png").read_bytes().startswith(b"\x89PNG")
+
+
 def test_a_speed_by_number():
     said = converse(
         "09",
@@ -132,7 +189,8 @@ def test_a_key_turns_round():
 def test_commands_one_after_another():
     said = converse(
         "12",
-        [("Commands", "S450A300D800S\r\n"), (r"at 800, 3\.278 s", "S450A300D800S"),
+        [("Commands", "S1A1D99999999999999999S"), ("must lie within", "S450A300D800S\r\n"),
+         (r"at 800, 3\.278 s", "S450A300D800S"),
          ("where it stands", "S600A900D-100S"), ("at -100", "S0A300D5S"), ("is no command", "S450A300D8xS"),
          ("is no command", "q")],
     )  # fmt: skip
