@@ -7,6 +7,7 @@ import itertools
 import math
 import runpy
 import sys
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -119,11 +120,13 @@ class Walled:
 
 
 def test_a_ramp_and_a_rest_on_a_board_by_the_walls_clock(
-    chip_program: Path, board_image: Callable[[str], Path], register: Any
+    chip_program: Path, board_image: Callable[[str], Path], register: Any, monkeypatch: pytest.MonkeyPatch
 ):
     """The board turns while the program goes on, and a rest longer than its patience with a silent host is one."""
     line = ChipTransport(chip_program, board_image("uno-l293d-1000000"))
-    line.edges = []
+    line.edges, wall = [], [100.0]
+    monkeypatch.setattr(time, "monotonic", lambda: wall[0])
+    monkeypatch.setattr(time, "sleep", lambda seconds: wall.__setitem__(0, wall[0] + seconds))
     time_ = PacedTime()
     shield = BoardShield(time_, Walled(line))
     motor = shield.motor(1)

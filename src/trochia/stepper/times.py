@@ -121,7 +121,7 @@ class PacedTime(VirtualTime):
 
     def wait_until(self, moment: float) -> None:
         """Wait until the wall clock has come to a moment [s]."""
-        while self._pace and (left := self._left(moment)) > 0.0:
+        while self._pace and (left := self._left(moment)) > 1e-6:
             time.sleep(min(left, SLICE))
             super().wait_until(min(moment, (time.monotonic() - self._began) * self._pace))
         super().wait_until(moment)

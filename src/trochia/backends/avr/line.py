@@ -167,7 +167,8 @@ class BoardLine:
         state = STATES.get(int(told.status["state"]), "")
         if state == "stopped":
             cause = CAUSES.get(int(told.status["cause"]), "?")
-            raise LinkError(f"the board stopped before the end: {cause.replace('_', ' ')}")
+            hint = "Steps came too late: this computer has too much to do." if cause == "low" else None
+            raise LinkError(f"the board stopped before the end: {cause.replace('_', ' ')}", hint=hint)
         return state
 
     def _turn(self) -> None:
