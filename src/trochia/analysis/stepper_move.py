@@ -168,17 +168,22 @@ def torque_curve(shaft: Drive, steps_per_turn: int) -> tuple[TorqueCurve, float]
     return TorqueCurve(speeds=tuple(speeds.tolist()), torques=tuple(torque.tolist())), abs(shaft.load.constant)
 
 
-def easier(made: Profile, shaft: Drive, holds: Callable[[Profile], bool] | None = None) -> Profile | None:
+def easier(
+    made: Profile, shaft: Drive, holds: Callable[[Profile], bool] | None = None, *, slower: bool = False
+) -> Profile | None:
     """Return the move at the speed and accelerations, none greater than asked, that the motor makes with its margin.
 
     None where no such move is found.  ``holds`` says of a move whether the twin loses no steps in it: lower speeds, and
-    lower accelerations at each, are tried until it does.
+    lower accelerations at each, are tried until it does.  ``slower``: the speed itself was too much, as where steps were
+    lost while it was held; then none as fast is tried, which luck might let pass.
     """
     demand, angle = made.demand, made.demand.step_angle
     usable = min(shaft.greatest_velocity, shaft.made.fastest(shaft.load)) / angle
     speed = min(demand.speed, SAFE * usable)
     if holds is not None and (hunts := _hunts(shaft, speed * angle, angle)) is not None:
         speed = min(speed, SAFE * hunts)  # where it runs unsteadily one move may do and the next not
+    if slower:
+        speed = min(speed, _SLOW * demand.speed)
     if not speed > 0.0:
         return None
     for _ in range(1 if holds is None else _SLOWER):

@@ -28,7 +28,7 @@ LONGEST = 600.0  #: of a move that is proved [s]
 SAMPLES = 50_000  #: kept of a run, some
 STRETCHES = 50  #: after which it tells how far it is
 REST = 0.3  #: after the last step: a rotor that swings comes to rest [s]
-FULL = 4  #: full steps from a stable point to the next
+_EVEN = 1e-6  # of a delay: they are the same
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,6 +57,13 @@ class Proof:
     def ok(self) -> bool:
         """Whether no step was lost."""
         return self.lost == 0
+
+    def steady(self, made: Profile) -> bool:
+        """Whether steps were lost where the profile holds its speed: it is the speed that is too much, not the ramp."""
+        if self.step is None:
+            return False
+        around = made.delays[max(self.step - 1, 0) : self.step + 2]
+        return float(np.ptp(around)) <= _EVEN * float(around.min())
 
 
 def prove_move(made: Profile, fed: Fed, load: ShaftLoad, progress: Callable[[str, float], None] | None = None) -> Proof:

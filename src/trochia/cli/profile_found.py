@@ -101,7 +101,12 @@ def _with_motor(
     remedy = None
     if not use.ok or (proof is not None and not proof.ok):
         try:
-            remedy = easier(made, motor.shaft, (lambda one: proved(one).ok) if prove else None)
+            remedy = easier(
+                made,
+                motor.shaft,
+                (lambda one: proved(one).ok) if prove else None,
+                slower=proof is not None and use.ok and proof.steady(made),
+            )
         except LimitError:
             remedy = None
     cured = None if judged.cure is None else move_use(judged.cure, motor.shaft)

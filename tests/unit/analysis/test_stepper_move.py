@@ -110,7 +110,11 @@ def test_hunting_is_told_and_a_lower_speed_is_found():
     use = move_use(asked, shaft)
     assert use.ok
     assert use.hunts is not None
-    assert not prove_move(asked, made, load).ok
+    proof = prove_move(asked, made, load)
+    assert not proof.ok
+    assert proof.steady(asked)
+    assert proof.steady(asked) is not replace(proof, step=5).steady(asked)
+    assert easier(asked, shaft, slower=True).demand.speed <= 0.8 * asked.demand.speed  # type: ignore[union-attr]
     found = easier(asked, shaft, lambda one: prove_move(one, made, load).ok)
     assert found is not None
     assert found.demand.speed < use.hunts
