@@ -174,8 +174,8 @@ def easier(
     """Return the move at the speed and accelerations, none greater than asked, that the motor makes with its margin.
 
     None where no such move is found.  ``holds`` says of a move whether the twin loses no steps in it: lower speeds, and
-    lower accelerations at each, are tried until it does.  ``slower``: the speed itself was too much, as where steps were
-    lost while it was held; then none as fast is tried, which luck might let pass.
+    lower accelerations at each, are tried until it does.  ``slower``: the speed itself was too much, as where steps
+    were lost while it was held; then none as fast is tried, which luck might let pass.
     """
     demand, angle = made.demand, made.demand.step_angle
     usable = min(shaft.greatest_velocity, shaft.made.fastest(shaft.load)) / angle

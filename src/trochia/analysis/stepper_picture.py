@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 _COLOURS = ("#0072b2", "#d55e00", "#009e73", "#b0548a", "#b8860b", "#3a8fb7")  # told apart without red and green
 _STROKES = ("-", (0, (5, 2)), (0, (1.5, 1.5)), (0, (6, 2, 1.5, 2)), (0, (3, 1)), "-")  # laws often lie on each other
 _INK, _SOFT, _FAINT, _RED = "#333333", "#777777", "#dddddd", "#b3261e"
+_PAPER: dict[str, Any] = {"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 1.0}  # behind a label
 _POINTS = 4000  # of a line; a longer move is thinned evenly
 _ROWS = {False: (8.2, [["time", "time"], ["step", "acceleration"]], (1.25, 1)),
          True: (11.4, [["time", "time"], ["step", "acceleration"], ["torque", "torque"]], (1.25, 1, 1))}  # fmt: skip
@@ -117,6 +118,7 @@ def _draw_proof(panels: dict[str, Axes], profile: Profile, proof: Proof, *, firs
     panels["time"].annotate(
         f"the twin loses {abs(proof.lost)} full steps from here on", (at, 0.99), xycoords=("data", "axes fraction"),
         xytext=(-4 if left else 4, 0), textcoords="offset points", va="top", ha="right" if left else "left", color=_RED,
+        bbox=_PAPER,
     )  # fmt: skip
 
 
@@ -136,8 +138,8 @@ def _dress_torque(panels: dict[str, Axes], uses: Sequence[Use]) -> None:
 def _mark(panel: Axes, speed: float, text: str) -> None:
     """Mark a speed across a panel."""
     panel.axhline(speed, color=_INK, linewidth=0.9, linestyle=":")
-    panel.annotate(text, (0.5, speed), xycoords=("axes fraction", "data"), ha="center",
-                   xytext=(0, 3), textcoords="offset points")  # fmt: skip
+    panel.annotate(text, (0.02, speed), xycoords=("axes fraction", "data"), ha="left", fontsize=8, color=_SOFT,
+                   xytext=(0, 3), textcoords="offset points", bbox=_PAPER)  # fmt: skip
 
 
 def _dress(panels: dict[str, Axes], profiles: Sequence[Profile], requirement: Requirement | None) -> None:
