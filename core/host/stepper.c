@@ -16,7 +16,8 @@ typedef struct {
     double r, per_l;
     double per_lag; /* L/lag */
     double ripple;  /* half the off time over L */
-    double va, vb;  /* levels; in voltage mode volts */
+    double drop, knee2;
+    double va, vb; /* levels; in voltage mode volts */
 } equations;
 
 static equations prepare(const trochia_stepper *m, const trochia_driver *driver, const trochia_coupling *c) {
@@ -25,7 +26,9 @@ static equations prepare(const trochia_stepper *m, const trochia_driver *driver,
                          .r = m->resistance,
                          .per_l = 1.0 / m->inductance,
                          .per_lag = m->inductance / driver->lag,
-                         .ripple = 0.5 * driver->off_time / m->inductance};
+                         .ripple = 0.5 * driver->off_time / m->inductance,
+                         .drop = driver->drop,
+                         .knee2 = driver->knee * driver->knee};
     return q;
 }
 
@@ -54,7 +57,10 @@ static inline vector derivative(const equations *q, int mode, int elastic, vecto
     const double c = cos(q->shaft.p * y.theta);
     const double ke = q->shaft.k * y.omega;
     double va = q->va, vb = q->vb;
-    if (mode != TROCHIA_STEPPER_VOLTAGE) {
+    if (mode == TROCHIA_STEPPER_BRIDGE) {
+        va -= stepper_dry(q->drop, y.ia, q->knee2);
+        vb -= stepper_dry(q->drop, y.ib, q->knee2);
+    } else if (mode != TROCHIA_STEPPER_VOLTAGE) {
         va = mean_voltage(q, mode == TROCHIA_STEPPER_OPEN ? 0.0 : va, y.ia, -ke * s);
         vb = mean_voltage(q, mode == TROCHIA_STEPPER_OPEN ? 0.0 : vb, y.ib, ke * c);
     }
@@ -91,7 +97,8 @@ static inline vector advance(const equations *q, int mode, int elastic, vector y
 }
 
 static void feed(equations *q, const stepper_levels *levels, int mode) {
-    const double volts = mode == TROCHIA_STEPPER_VOLTAGE ? q->driver->supply : 1.0;
+    const int bridge = mode == TROCHIA_STEPPER_VOLTAGE || mode == TROCHIA_STEPPER_BRIDGE;
+    const double volts = bridge ? q->driver->supply : 1.0;
     q->va = volts * levels->a;
     q->vb = volts * levels->b;
 }
@@ -163,6 +170,8 @@ int64_t trochia_stepper_run(const trochia_stepper *motor, const trochia_driver *
     switch (mode) {
     case TROCHIA_STEPPER_VOLTAGE:
         return march(&q, TROCHIA_STEPPER_VOLTAGE, 0, state, input, h, &out);
+    case TROCHIA_STEPPER_BRIDGE:
+        return march(&q, TROCHIA_STEPPER_BRIDGE, 0, state, input, h, &out);
     case TROCHIA_STEPPER_MEAN:
         return march(&q, TROCHIA_STEPPER_MEAN, 0, state, input, h, &out);
     default:

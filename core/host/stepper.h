@@ -5,9 +5,10 @@
  *   J dw/dt = T - B w - F w / sqrt(w^2 + creep^2) - load - C        C = k (x - y) + c (w - u)
  *   J_l du/dt = C - B_l u - F_l u / sqrt(u^2 + creep^2) - load_l    behind a coupling; without one C is nothing
  *
- * trochia_stepper_run: v is constant between step pulses (voltage; a phase at level 0 is shorted), or what a chopper
- * gives on average (mean), or what the diodes of an open bridge give (open); Runge-Kutta of fourth order, a pulse cuts
- * the step, so a level never changes within a stage.  trochia_chopper_run: every switching of the chopper, at `sub`
+ * trochia_stepper_run: v is constant between step pulses (voltage; a phase at level 0 is shorted), or so but for a drop
+ * that is against the current, v = level V - drop i / sqrt(i^2 + knee^2) (bridge), or what a chopper gives on average
+ * (mean), or what the diodes of an open bridge give (open); Runge-Kutta of fourth order, a pulse cuts the step, so a
+ * level never changes within a stage.  trochia_chopper_run: every switching of the chopper, at `sub`
  * steps a tick; the currents step exactly for a voltage that is constant over the step, the mechanics semi-implicitly.
  */
 #ifndef TROCHIA_STEPPER_H
@@ -15,7 +16,12 @@
 
 #include <stdint.h>
 
-enum trochia_stepper_mode { TROCHIA_STEPPER_VOLTAGE = 0, TROCHIA_STEPPER_MEAN = 1, TROCHIA_STEPPER_OPEN = 2 };
+enum trochia_stepper_mode {
+    TROCHIA_STEPPER_VOLTAGE = 0,
+    TROCHIA_STEPPER_MEAN = 1,
+    TROCHIA_STEPPER_OPEN = 2,
+    TROCHIA_STEPPER_BRIDGE = 3
+};
 
 typedef struct {
     double resistance;      /* R of a phase [ohm] */
@@ -31,7 +37,9 @@ typedef struct {
 } trochia_stepper;
 
 typedef struct {
-    double supply;     /* across a phase at level 1, or while a chopper drives it [V] */
+    double supply;     /* across a phase at level 1, or while a chopper drives it; of a bridge without its drop [V] */
+    double drop;       /* of a bridge, against the current, driven or idle [V] */
+    double knee;       /* current at which that drop is 1/sqrt(2) of it [A] */
     double current;    /* of a chopper at level 1 [A] */
     double lowest;     /* mean voltage of a chopper that is off but for the blanking [V] */
     double fast;       /* part of the off time in fast decay, 0 to 1 */

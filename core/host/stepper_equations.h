@@ -30,8 +30,9 @@ static inline stepper_shaft stepper_prepare(const trochia_stepper *m, const troc
     return q;
 }
 
-static inline double stepper_dry(double torque, double omega, double creep2) {
-    return torque > 0.0 ? torque * omega / sqrt(omega * omega + creep2) : 0.0;
+/* What is of one size against a motion or a current, smoothed where that turns round. */
+static inline double stepper_dry(double size, double x, double knee2) {
+    return size > 0.0 ? size * x / sqrt(x * x + knee2) : 0.0;
 }
 
 /* On the rotor, all but the coupling; 4 d s c (1 - 2 s^2) is d sin(4 p x). */

@@ -2,9 +2,10 @@
 
 In: step pulses.  Out: what the rotor did, and how many steps it lost.
 
-A voltage drive (a bridge, L/R) has nothing to control.  A chopper is followed on average, at 20 us a tick.  Where the
-load angle or the torque comes near to what the motor can hold, the stretch is done again switch by switch, at 1 us,
-from the very state before it: there the shape of the current decides whether steps are lost.
+A voltage drive (a bridge, L/R) has nothing to control; what a bridge drops is against the current, in idle phases
+too.  A chopper is followed on average, at 20 us a tick.  Where the load angle or the torque comes near to what the motor
+can hold, the stretch is done again switch by switch, at 1 us, from the very state before it: there the shape of the
+current decides whether steps are lost.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import numpy as np
 
 from trochia.errors import ConfigError
 from trochia.kernels.stepper import CouplingConstants, DriverConstants, Mode, StepperConstants, StepperKernel
+from trochia.machine.drivers.bridge import KNEE
 from trochia.machine.motors.hybrid import FREE
 from trochia.machine.motors.shaft import CREEP
 
@@ -31,6 +33,7 @@ if TYPE_CHECKING:
 STEP = 20e-6  #: time step [s]
 SWITCH = 1e-6  #: time step of a chopper's switching [s]
 _SPEEDS = np.linspace(0.0, 1000.0, 501)  # of the shaft [rad/s]
+SOFTEST = 2.5  #: time steps in which the drop of a bridge may turn round with the current, at least
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -151,10 +154,11 @@ class StepperTwin:
     def set_enabled(self, enabled: bool) -> None:  # noqa: FBT001 - the one switch
         """Switch the phases on, or release them: held, shorted or open, as the driver does."""
         on = enabled or self.made.driver.released == "hold"
-        driven = Mode.VOLTAGE if self.made.chopper is None else Mode.MEAN
+        across = Mode.BRIDGE if self.made.opposing else Mode.VOLTAGE
+        driven = across if self.made.chopper is None else Mode.MEAN
         short = not on and self.made.driver.released == "short"
         self._kernel.set_driver(_driver(self.made, self._kernel.step, scale=0.0 if short else 1.0))
-        self._kernel.mode = driven if on else Mode.VOLTAGE if short else Mode.OPEN
+        self._kernel.mode = driven if on else across if short else Mode.OPEN
 
     def queue(self, times: NDArray[np.float64], direction: int | NDArray[np.int8] = 1) -> None:
         """Add step pulses [s since zero] (pulses,) to those to come, in one direction or each in its own (pulses,).
@@ -267,7 +271,11 @@ def _driver(made: Fed, tick: float, *, scale: float = 1.0) -> DriverConstants:
     """Return what the kernel needs of the driver."""
     chopper = made.chopper
     if chopper is None:
-        return DriverConstants(supply=made.voltage, scale=scale, lag=2 * tick)
+        drop, widest = made.opposing, SOFTEST * tick / made.motor.inductance
+        return DriverConstants(
+            supply=made.voltage + drop, drop=drop, knee=max(KNEE * made.current, drop * widest), scale=scale,
+            lag=2 * tick,
+        )  # fmt: skip
     return DriverConstants(
         supply=chopper.supply,
         current=chopper.current,

@@ -28,6 +28,7 @@ class Mode(IntEnum):
     VOLTAGE = 0
     MEAN = 1
     OPEN = 2
+    BRIDGE = 3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,6 +52,8 @@ class DriverConstants:
     """The constants of ``trochia_driver``, in SI units."""
 
     supply: float
+    drop: float = 0.0
+    knee: float = 1.0
     current: float = 0.0
     lowest: float = 0.0
     fast: float = 0.0

@@ -40,7 +40,7 @@ def millisecond(period: float, steps: int) -> Floats:
     The remainder is carried to the next wait, so the mean rate is right and single waits are up to 1 ms off: at 200
     steps a turn 150 rpm are even (2 ms), 200 rpm are 1 and 2 ms in turn.
     """
-    micros = int(period * 1e6)
+    micros = int(period * 1e6 + 1e-6)
     done = np.arange(steps + 1, dtype=np.int64) * micros
     return (done // 1000).astype(np.float64) * 1e-3
 

@@ -12,10 +12,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from trochia.errors import LimitError
 
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
 L293D_DROPS = (1.4, 1.2)  #: saturation voltages of the upper and the lower transistor, typical; up to 1.8 V each [V]
+KNEE = 0.03  #: current at which a bridge's drop is 1/√2 of it, part of what a phase draws at rest
 
 
 class Output(Enum):
@@ -36,8 +45,8 @@ def half_bridge(level: bool, enable: bool) -> Output:  # noqa: FBT001 - two pins
 def bridge_voltage(a: Output, b: Output, supply: float, drops: tuple[float, float] = (0.0, 0.0)) -> float | None:
     """Return the voltage that a bridge puts across its phase, A less B [V]; None: the phase is open.
 
-    A phase with both outputs on one side is shorted, at 0 V: a rotor that turns is braked by it.  ``drops`` are those
-    of the upper and the lower transistor while current flows as driven.
+    A phase with both outputs on one side is shorted: a rotor that turns is braked by it.  ``drops`` are those of the
+    upper and the lower transistor while current flows as driven; :func:`phase_voltage` has them in every state.
     """
     if Output.OPEN in {a, b}:
         return None
@@ -45,6 +54,21 @@ def bridge_voltage(a: Output, b: Output, supply: float, drops: tuple[float, floa
         return 0.0
     driven = supply - sum(drops)
     return driven if a is Output.HIGH else -driven
+
+
+def phase_voltage(level: Array, current: Array, *, supply: float, drop: float, knee: float) -> Array:
+    """Return the voltage across a phase (...) [V] that a bridge of bipolar transistors is to put to a level, -1 to 1.
+
+    Whatever the bridge does, two junctions lie in the current's way, and their drop is against it.  An L293D at 0.6 A:
+
+    - driven with the current, two transistors: supply - 2.6 V
+    - level 0, both outputs low, the current goes round through a transistor and a diode: -2.5 V.  Below that voltage
+      back-EMF drives nothing: an idle phase brakes a fast rotor and lets a slow one go
+    - driven against the current still flowing, two diodes into the supply: -(supply + 2.6 V)
+
+    So one drop stands for all three.  It is smoothed over the current ``knee`` [A], for diodes turn round smoothly.
+    """
+    return level * supply - drop * current / np.hypot(current, knee)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -14,6 +14,7 @@ import numpy as np
 from trochia.errors import ConfigError, LimitError
 from trochia.machine.drivers.chip import Chip, excited
 from trochia.machine.drivers.chopper import Chopper
+from trochia.machine.drivers.voltage import HBridge
 from trochia.machine.motors.curves import corner_speed, holding_torque, pull_out_torque, start_stop_speed
 from trochia.machine.motors.hybrid import FREE
 
@@ -106,6 +107,11 @@ class Fed:
     def voltage(self) -> float:
         """Across a phase at level 1 [V]."""
         return self.driver.phase_voltage
+
+    @property
+    def opposing(self) -> float:
+        """What the bridge drops against the current of a phase, driven or not [V]; see ``bridge.phase_voltage``."""
+        return self.driver.drop if isinstance(self.driver, HBridge) else 0.0
 
     @property
     def amplitude(self) -> float:
