@@ -109,7 +109,7 @@ def test_every_switching_is_as_python_states_it(decay: str):
 
 
 def test_a_load_behind_a_coupling_is_as_python_states_it():
-    made = fed(BIG, HBridge(supply=12.0, drop=2.0))
+    made = fed(BIG, HBridge(supply=10.0, drop=0.0))
     coupling = Coupling(stiffness=8.0, damping=1e-3)
     twin = StepperTwin(made, LOAD, coupling=coupling)
     twin.queue(np.arange(1, 12) * 100 * H)

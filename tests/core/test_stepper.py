@@ -8,11 +8,13 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from trochia.backends.stepper_twin import StepperTwin
+from trochia.backends.stepper_twin import SOFTEST, StepperTwin
 from trochia.errors import ConfigError, LimitError
 from trochia.kernels.stepper import DriverConstants, StepperConstants, StepperKernel
 from trochia.machine.drivers import Fed, HBridge, fed
+from trochia.machine.drivers.bridge import KNEE, phase_voltage
 from trochia.machine.motors import HybridStepper, ShaftLoad, motor
+from trochia.machine.motors.coupled import Coupling, coupled_derivative
 from trochia.pulses.excitation import excitation
 
 STEP, VOLTS = 20e-6, 10.0
@@ -54,6 +56,40 @@ def reference(stepper, mode, load, pulses, ticks):
             k4 = rate(state + h * k3)
             state = state + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
         yield state, position
+
+
+@pytest.mark.parametrize("elastic", [False, True])
+@pytest.mark.parametrize("released", [False, True])
+def test_what_a_bridge_drops_is_against_the_current_as_python_states_it(released: bool, elastic: bool):
+    """With a coupling and without one, driven and released; phases idle in turn, currents turn round."""
+    stepper, load, ticks = MOTORS["rough"], LOADS["heavy"], 400
+    made = fed(stepper, HBridge(supply=VOLTS, drop=2.4, excitation="half-step"))
+    coupling = Coupling(stiffness=20.0, damping=1e-3)
+    twin = StepperTwin(made, load, coupling=coupling if elastic else None)
+    twin.queue(np.arange(1, 20) * 12 * STEP)
+    run = twin.run(240 * STEP)
+    twin.set_enabled(not released)
+    after = twin.run((ticks - 240) * STEP)
+    got = np.concatenate([np.column_stack([r.currents, r.theta, r.omega]) for r in (run, after)])
+    first, levels = made.excitation.first_angle / stepper.teeth, made.excitation.levels
+    state = np.array([0.0, 0.0, first, 0.0, first, 0.0])
+    knee = max(KNEE * made.current, 2.4 * SOFTEST * STEP / stepper.inductance)
+
+    for tick in range(ticks):
+        row = levels[min(tick // 12, 19) % len(levels)] * (0.0 if released and tick >= 240 else 1.0)
+
+        def rate(y: np.ndarray, row: np.ndarray = row) -> np.ndarray:
+            volts = phase_voltage(row, y[:2], supply=VOLTS, drop=2.4, knee=knee)
+            if elastic:
+                return coupled_derivative(stepper, coupling, load, y, volts)
+            return np.concatenate([stepper.derivative(y[:4], volts, load), [0.0, 0.0]])
+
+        k1 = rate(state)
+        k2 = rate(state + STEP / 2 * k1)
+        k3 = rate(state + STEP / 2 * k2)
+        k4 = rate(state + STEP * k3)
+        state = state + STEP / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+        assert got[tick] == pytest.approx(state[:4].tolist(), rel=1e-7, abs=1e-9)
 
 
 @pytest.mark.parametrize("name", MOTORS)

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from trochia.errors import ConfigError, LimitError
 from trochia.machine.drivers import (
@@ -22,7 +23,7 @@ from trochia.machine.drivers import (
     heat,
     shoot_through,
 )
-from trochia.machine.drivers.bridge import check_dead_time
+from trochia.machine.drivers.bridge import check_dead_time, phase_voltage
 from trochia.machine.motors import ShaftLoad, motor
 from trochia.machine.motors.wiring import wired
 
@@ -43,6 +44,20 @@ def test_truth_table_of_a_half_bridge():
 )
 def test_bridge_voltage_drives_shorts_or_opens_the_phase(a: Output, b: Output, expected: float | None):
     assert bridge_voltage(a, b, 12.0, L293D_DROPS) == (None if expected is None else pytest.approx(expected))
+
+
+def test_what_an_l293d_drops_is_against_the_current_in_every_state():
+    """Driven: two transistors.  Idle: a transistor and a diode, and nothing flows below their drop.  Against: two diodes."""
+    flows, back = np.array(0.6), np.array(-0.6)
+    given = {"supply": 12.0, "drop": 2.6, "knee": 0.01}
+    assert phase_voltage(np.array(1.0), flows, **given) == pytest.approx(12 - 2.6, abs=1e-3)
+    assert phase_voltage(np.array(-1.0), back, **given) == pytest.approx(-12 + 2.6, abs=1e-3)
+    assert phase_voltage(np.array(0.0), flows, **given) == pytest.approx(-2.6, abs=1e-3)
+    assert phase_voltage(np.array(-1.0), flows, **given) == pytest.approx(-12 - 2.6, abs=1e-3)
+    # at rest, 2 V of back-EMF drive next to nothing through an idle phase of 34 ohm, 5 V what is left above the drop
+    for emf, expected in ((2.0, 0.01), (5.0, (5 - 2.6) / 34)):
+        amps = brentq(lambda i, e=emf: e + phase_voltage(np.array(0.0), np.array(i), **given) - 34 * i, 0, 1)
+        assert amps == pytest.approx(expected, abs=2e-3)
 
 
 def test_a_leg_that_turns_off_slower_than_the_other_turns_on_shorts_the_supply():

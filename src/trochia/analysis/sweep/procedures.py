@@ -36,6 +36,7 @@ ASTRAY = 0.75  #: full steps from its place at which steps are lost; a motor rel
 HOLD = 0.05  #: at a load before it is raised [s]
 COARSE, FINE = 0.05, 0.005  #: rises of the load, parts of the torque expected
 REPEATS = 3
+CONFIRMED = 2  #: speeds in a row that cost steps in starting or stopping, until that is a limit
 PATIENCE = 25  #: speeds in a row that cost steps, until a motor has stalled
 
 
@@ -70,13 +71,14 @@ def pull_out_speed(
 def start_stop_speed_measured(
     made: Fed, speeds: Iterable[float], load: ShaftLoad = FREE, timing: Timing = EXACT, *, turns: float = 1.0
 ) -> float:
-    """Return the greatest of some rising speeds [rad/s] before the first that costs steps in starting or stopping.
+    """Return the greatest of some rising speeds [rad/s] before steps are lost in starting or stopping.
 
-    Each turn begins and ends at rest; 0 where the first one costs steps.  A bridge that shorts a released motor lets it
-    go as soon as the last step's time is over, as the sketch does, and the next turn begins with windings without
-    current.  The rotor may then run on for a step or more: it has started, but not stopped where it should.
+    Each turn begins and ends at rest.  A bridge that shorts a released motor lets it go as soon as the last step's time
+    is over, as the sketch does, and the next turn begins with windings without current; such a rotor may run on for a
+    step or more: it has started, but not stopped where it should.  A speed alone that costs steps is taken for a
+    resonance; :data:`CONFIRMED` in a row are the limit.  0 where the first ones do.
     """
-    twin, held = twin_of(made, load), 0.0
+    twin, held, failed, lost = twin_of(made, load), 0.0, 0, 0
     release = made.driver.released == "short"
     twin.run(SETTLE)
     for speed in speeds:
@@ -84,9 +86,11 @@ def start_stop_speed_measured(
         _turn(twin, made, speed, timing, turns)
         twin.set_enabled(not release)
         behind = float(twin.run(REST, every=100).load_angle[-1]) / (0.5 * math.pi)
-        if abs(behind) > ASTRAY:
+        before, lost = lost, 4 * round(behind / 4)
+        failed = failed + 1 if abs(behind - before) > ASTRAY else 0
+        if failed == CONFIRMED:
             break
-        held = speed
+        held = held if failed else speed
     return held
 
 

@@ -39,6 +39,10 @@ class CatalogueStepper:
     phases_on: int = field(default=2, metadata=key(Whole(), "phases on when the holding torque was taken"))
     detent_torque: float = field(default=0.0, metadata=key(Quantity("torque"), "without current", Bound.NOT_NEGATIVE))
     friction: float = field(default=0.0, metadata=key(Quantity("torque"), "of the bearings", Bound.NOT_NEGATIVE))
+    viscous: float = field(
+        default=0.0, metadata=key(Quantity("viscous friction"), "friction that grows with speed: eddy currents in the "
+                                  "iron, grease", Bound.NOT_NEGATIVE)
+    )  # fmt: skip
     voltage: float | None = field(default=None, metadata=key(Quantity("voltage"), "rated, if any", Bound.POSITIVE))
     frame: str | None = field(default=None, metadata=key(Text(), 'its size, like "NEMA 17"'))
     source: str | None = field(default=None, metadata=key(Text(), "where the numbers come from"))
@@ -107,4 +111,5 @@ class CatalogueStepper:
             torque_constant=self.torque_constant,
             detent=self.detent_torque,
             friction=self.friction,
+            viscous=self.viscous,
         )
