@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 _TIMINGS = ("exact", "millisecond", "shield")  # those of `analysis.sweep.TIMINGS`
 _BESIDES = 5  # curves over the first
+_COMPARE = "compare"  # full steps with one phase and with both, timed by the shield and exactly
 _ROWS = 12  # of the curve on a terminal
 
 
@@ -63,9 +64,10 @@ class _Found:
 )
 @click.option(
     "--limits",
-    type=click.Choice(_TIMINGS),
-    metavar="|".join(_TIMINGS),
-    help="Also search pull-out and start/stop speed on the twin, with pulses timed so.",
+    type=click.Choice((*_TIMINGS, _COMPARE)),
+    metavar="|".join((*_TIMINGS, _COMPARE)),
+    help="Also search pull-out and start/stop speed on the twin, with pulses timed so; compare: both full steps, timed "
+    "by the shield's library and exactly.",
 )
 @click.option(
     "-o", "--plot", type=click.Path(dir_okay=False, writable=True), metavar="FILE.png|FILE.svg", help="Draw the curve."
@@ -126,7 +128,7 @@ def _find(given: dict[str, Any]) -> _Found:
         made, *others = (
             curve(
                 one.made, one.load, top=top, points=given["points"], measure=given["measure"],
-                timing=None if given["limits"] is None else TIMINGS[given["limits"]], progress=progress,
+                timing=TIMINGS.get(given["limits"]), compared=given["limits"] == _COMPARE, progress=progress,
             ) for one in (wanted, *besides)
         )  # fmt: skip
     return _Found(
@@ -166,6 +168,14 @@ def _points(wanted: Asked, program: str | None) -> OperatingPoints | None:
         problem = verdict.problems[0]
         raise click.BadParameter(str(problem), param_hint="--program")
     return operating_points(verdict.plan, wanted.joint, wanted.drive)
+
+
+def _show_compared(rows: list[dict[str, Any]]) -> None:
+    """Print the limits of both full steps, as asked for and as turned."""
+    cells = [["limits on the twin [rpm]", "timing", "pull-out", "turned", "start/stop", "turned", "first loss"]]
+    names = ("pull_out_rpm", "pull_out_turned_rpm", "start_stop_rpm", "start_stop_turned_rpm", "start_stop_first_rpm")
+    cells += [[row["excitation"], row["timing"], *(f"{row[name]:.0f}" for name in names)] for row in rows]
+    click.echo(table(cells, left=(0, 1)))
 
 
 def _over(found: _Found) -> int:
@@ -224,6 +234,8 @@ def _show(found: _Found) -> None:
     for name, value in figures["limits_rpm"].items():
         said = f"{value:.0f} rpm"
         click.echo(f"  {name.replace('_', '/' if name == 'start_stop' else '-')} speed on the twin: {said}")
+    if figures["limits_compared"]:
+        _show_compared(figures["limits_compared"])
     for problem in figures["problems"]:
         click.secho(f"  too hot: {problem}", fg="red")
     if found.points is not None:

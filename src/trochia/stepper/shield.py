@@ -70,9 +70,9 @@ class Shield:
         self.latched: deque[tuple[float, int]] = deque(maxlen=_KEPT)
 
     def motor(self, port: int, steps_per_turn: int = 200, output: StepOutput | None = None, *,
-              whole_milliseconds: bool = False) -> ShieldMotor:  # fmt: skip
-        """Return the motor on port 1 or 2; errors as of :class:`ShieldMotor`."""
-        return ShieldMotor(self, port, steps_per_turn, output, whole_milliseconds=whole_milliseconds)
+              whole_milliseconds: bool = False, work: float = 0.0) -> ShieldMotor:  # fmt: skip
+        """Return the motor on port 1 or 2; parameters and errors as of :class:`ShieldMotor`."""
+        return ShieldMotor(self, port, steps_per_turn, output, whole_milliseconds=whole_milliseconds, work=work)
 
     def stepped(self, port: int, moment: float, position: int, direction: int, style: Style) -> None:
         """Have a motor's step made: by its twin, and by a board where the shield is on one."""
@@ -99,6 +99,8 @@ class ShieldMotor:
         Where its steps go beside the register: a twin, say.
     whole_milliseconds
         Wait whole milliseconds between steps, as the shield's own library does, the rest carried on; else exactly.
+    work
+        What a step takes beside its wait of whole milliseconds [s]; of that library ``pulses.latch.STEP_WORK``.
 
     Raises
     ------
@@ -107,7 +109,7 @@ class ShieldMotor:
     """
 
     def __init__(self, shield: Shield, port: int, steps_per_turn: int, output: StepOutput | None, *,
-                 whole_milliseconds: bool) -> None:  # fmt: skip
+                 whole_milliseconds: bool, work: float = 0.0) -> None:  # fmt: skip
         if port not in BITS or steps_per_turn < 1:
             raise ConfigError(f"the shield has the ports 1 and 2, and a turn has steps; not {port}, {steps_per_turn}")
         self.shield = shield
@@ -116,7 +118,7 @@ class ShieldMotor:
         self.output = output
         self.position = 0  #: in sixty-fourths of an electrical turn
         self.levels = (0.0, 0.0)  #: of its phases, parts of the supply
-        self._whole = whole_milliseconds
+        self._whole, self._work = whole_milliseconds, work
         self._full_step = 0.0
         self._released = False
 
@@ -152,7 +154,7 @@ class ShieldMotor:
             self.onestep(direction, style)
             passed = done * interval
             if self._whole:
-                passed = (done * int(interval * 1e6 + 1e-6) // 1000) / 1000
+                passed = (done * int(interval * 1e6 + 1e-6) // 1000) / 1000 + done * self._work
             self.shield.time.wait_until(begin + passed)
 
     def onestep(self, direction: int, style: Style, moment: float | None = None) -> None:

@@ -6,27 +6,24 @@ In: a motor behind its driver, its load.  Out: :class:`Curve`, by closed forms, 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from trochia.analysis.stability import growth_rate
-from trochia.analysis.sweep.procedures import (
-    pull_in_torque,
-    pull_out_speed,
-    pull_out_torque_measured,
-    start_stop_speed_measured,
-)
+from trochia.analysis.sweep.limits import compare, limits
+from trochia.analysis.sweep.procedures import pull_in_torque, pull_out_torque_measured
 from trochia.errors import LimitError
 from trochia.machine.motors.hybrid import FREE
 from trochia.machine.motors.shaft import ShaftLoad
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
 
     from numpy.typing import NDArray
 
+    from trochia.analysis.sweep.limits import Limits
     from trochia.analysis.sweep.timing import Timing
     from trochia.machine.drivers import Fed
 
@@ -55,6 +52,8 @@ class Curve:
         By the estimate of energy [rad/s]; 0: it does not start.
     limits
         Measured on the twin: ``pull_out`` and ``start_stop`` speeds [rad/s]; empty where nobody asked.
+    compared
+        The same for both full steps, timed by the shield's library and exactly; empty where nobody asked.
     """
 
     made: Fed
@@ -67,6 +66,7 @@ class Curve:
     resonance: float
     start_stop: float
     limits: dict[str, float]
+    compared: list[Limits] = field(default_factory=list["Limits"])
 
     def unstable(self) -> list[tuple[float, float]]:
         """Return the bands of speed in which a small disturbance grows [rad/s]."""
@@ -93,6 +93,7 @@ class Curve:
             "start_stop_rpm": min(self.start_stop, fastest) * RPM,
             "unstable_rpm": [[low * RPM, high * RPM] for low, high in self.unstable()],
             "limits_rpm": {name: speed * RPM for name, speed in self.limits.items()},
+            "limits_compared": [one.figures() for one in self.compared],
             "curve": rows,
         }
 
@@ -105,6 +106,7 @@ def curve(
     points: int = 40,
     measure: bool = False,
     timing: Timing | None = None,
+    compared: bool = False,
     progress: Callable[[str, float], None] | None = None,
 ) -> Curve:
     """Return the curve of a motor behind its driver.
@@ -119,6 +121,8 @@ def curve(
         Also measure pull-out and pull-in torques on the twin.
     timing
         Also search the pull-out and start/stop speeds on the twin, with pulses timed so, in steps of 1 rpm.
+    compared
+        Also search them for both full steps, timed by the shield's library and exactly.
     """
     end = made.top(FALLEN) if top is None else top
     speeds = np.linspace(end / points, end, points)
@@ -145,6 +149,7 @@ def curve(
         resonance=math.sqrt(made.motor.teeth * made.holding / (made.motor.inertia + load.inertia)) / math.tau,
         start_stop=made.start_stop(load),
         limits={} if timing is None else _limits(made, load, end, timing, progress),
+        compared=compare(made, load, top=end, progress=progress) if compared else [],
     )
 
 
@@ -161,17 +166,6 @@ def _growth(made: Fed, speed: float, load: ShaftLoad) -> float:
 def _limits(
     made: Fed, load: ShaftLoad, end: float, timing: Timing, progress: Callable[[str, float], None] | None
 ) -> dict[str, float]:
-    """Return the greatest speeds without lost steps, in steps of 1 rpm from 20 rpm on."""
-    speeds = (np.arange(20.0, 2 * end * RPM) / RPM).tolist()
-    return {
-        "pull_out": pull_out_speed(made, _told(speeds, "pull-out", progress), load, timing),
-        "start_stop": start_stop_speed_measured(made, _told(speeds, "start/stop", progress), load, timing),
-    }
-
-
-def _told(speeds: list[float], label: str, progress: Callable[[str, float], None] | None) -> Iterator[float]:
-    """Yield speeds, telling how far one is; most searches end before the last."""
-    for i, speed in enumerate(speeds):
-        if progress is not None:
-            progress(label, i / len(speeds))
-        yield speed
+    """Return the greatest speeds without lost steps."""
+    found = limits(made, load, timing, top=end, progress=progress)
+    return {"pull_out": found.pull_out, "start_stop": found.start_stop}

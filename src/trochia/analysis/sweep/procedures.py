@@ -37,6 +37,7 @@ HOLD = 0.05  #: at a load before it is raised [s]
 COARSE, FINE = 0.05, 0.005  #: rises of the load, parts of the torque expected
 REPEATS = 3
 CONFIRMED = 2  #: speeds in a row that cost steps in starting or stopping, until that is a limit
+STOOD = 0.5  #: part of a turn's steps whose loss is no resonance: the rotor stood
 PATIENCE = 25  #: speeds in a row that cost steps, until a motor has stalled
 
 
@@ -54,15 +55,16 @@ def pull_out_speed(
     """Return the greatest of some rising speeds [rad/s] at which a turn costs no steps; 0 where the first one does.
 
     Each speed is held for ``turns``, the next follows without a stop.  A motor that lost steps, at a resonance say, may
-    recover at a higher speed; after :data:`PATIENCE` speeds in a row it has stalled.
+    recover at a higher speed; one that lost half a turn's, or some at :data:`PATIENCE` speeds in a row, has stalled.
     """
+    stood = STOOD * turns * made.motor.full_steps
     twin = twin_of(made, load)
     twin.run(SETTLE)
     held, failed, lost = 0.0, 0, 0
     for speed in speeds:
         before, lost = lost, _turn(twin, made, speed, timing, turns)
         failed = failed + 1 if abs(lost - before) >= 4 else 0
-        if failed > PATIENCE:
+        if failed > PATIENCE or abs(lost - before) >= stood:
             break
         held = held if failed else speed
     return held
@@ -73,12 +75,23 @@ def start_stop_speed_measured(
 ) -> float:
     """Return the greatest of some rising speeds [rad/s] before steps are lost in starting or stopping.
 
+    A speed alone that costs steps is taken for a resonance; two in a row are the limit.  0 where the first ones do.
+    """
+    return start_stop_speeds(made, speeds, load, timing, turns=turns)[0]
+
+
+def start_stop_speeds(
+    made: Fed, speeds: Iterable[float], load: ShaftLoad = FREE, timing: Timing = EXACT, *, turns: float = 1.0
+) -> tuple[float, float]:
+    """Return the same, and the speed before the very first that costs a step [rad/s].
+
     Each turn begins and ends at rest.  A bridge that shorts a released motor lets it go as soon as the last step's time
     is over, as the sketch does, and the next turn begins with windings without current; such a rotor may run on for a
-    step or more: it has started, but not stopped where it should.  A speed alone that costs steps is taken for a
-    resonance; :data:`CONFIRMED` in a row are the limit.  0 where the first ones do.
+    step or more: it has started, but not stopped where it should.
     """
-    twin, held, failed, lost = twin_of(made, load), 0.0, 0, 0
+    twin, held, lost = twin_of(made, load), 0.0, 0
+    kept: list[bool] = []
+    first = None
     release = made.driver.released == "short"
     twin.run(SETTLE)
     for speed in speeds:
@@ -86,12 +99,14 @@ def start_stop_speed_measured(
         _turn(twin, made, speed, timing, turns)
         twin.set_enabled(not release)
         behind = float(twin.run(REST, every=100).load_angle[-1]) / (0.5 * math.pi)
-        before, lost = lost, 4 * round(behind / 4)
-        failed = failed + 1 if abs(behind - before) > ASTRAY else 0
-        if failed == CONFIRMED:
+        kept.append(abs(behind - lost) <= ASTRAY)
+        lost = 4 * round(behind / 4)
+        if first is None and not kept[-1]:
+            first = held
+        if not any(kept[-CONFIRMED:]) and len(kept) >= CONFIRMED:
             break
-        held = held if failed else speed
-    return held
+        held = speed if kept[-1] else held
+    return held, held if first is None else first
 
 
 def _turn(twin: StepperTwin, made: Fed, speed: float, timing: Timing, turns: float) -> int:
