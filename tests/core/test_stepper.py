@@ -60,7 +60,7 @@ def reference(stepper, mode, load, pulses, ticks):
 
 @pytest.mark.parametrize("elastic", [False, True])
 @pytest.mark.parametrize("released", [False, True])
-def test_what_a_bridge_drops_is_against_the_current_as_python_states_it(released: bool, elastic: bool):
+def test_what_a_bridge_drops_is_against_the_current_as_python_states_it(*, released: bool, elastic: bool):
     """With a coupling and without one, driven and released; phases idle in turn, currents turn round."""
     stepper, load, ticks = MOTORS["rough"], LOADS["heavy"], 400
     made = fed(stepper, HBridge(supply=VOLTS, drop=2.4, excitation="half-step"))

@@ -3,9 +3,9 @@
 In: step pulses.  Out: what the rotor did, and how many steps it lost.
 
 A voltage drive (a bridge, L/R) has nothing to control; what a bridge drops is against the current, in idle phases
-too.  A chopper is followed on average, at 20 us a tick.  Where the load angle or the torque comes near to what the motor
-can hold, the stretch is done again switch by switch, at 1 us, from the very state before it: there the shape of the
-current decides whether steps are lost.
+too.  A chopper is followed on average, at 20 us a tick.  Where the load angle or the torque comes near to what the
+motor can hold, the stretch is done again switch by switch, at 1 us, from the very state before it: there the shape of
+the current decides whether steps are lost.
 """
 
 from __future__ import annotations

@@ -49,7 +49,7 @@ def search(bench: Drive, limit: str, mode: str, timing: str) -> tuple[float, flo
 
 @pytest.mark.parametrize(("limit", "mode"), CASES)
 def test_all_four_limits_are_within_15_percent_and_exact_timing_is_better(limit: str, mode: str, bench: Drive):
-    """Stopping with one phase is a matter of running on, not of even pulses: there even pulses save the single losses."""
+    """With one phase a motor stops by running on, whatever its pulses: there even ones save the single losses."""
     library, exact = (search(bench, limit, mode, timing) for timing in ("shield", "exact"))
     assert library[0] == pytest.approx(MEASURED[limit][mode], rel=0.15)
     which = 1 if (limit, mode) == ("start/stop", "one-phase") else 0

@@ -47,7 +47,7 @@ def test_bridge_voltage_drives_shorts_or_opens_the_phase(a: Output, b: Output, e
 
 
 def test_what_an_l293d_drops_is_against_the_current_in_every_state():
-    """Driven: two transistors.  Idle: a transistor and a diode, and nothing flows below their drop.  Against: two diodes."""
+    """Driven: two transistors.  Idle: transistor and diode, nothing flows below their drop.  Against: two diodes."""
     flows, back = np.array(0.6), np.array(-0.6)
     given = {"supply": 12.0, "drop": 2.6, "knee": 0.01}
     assert phase_voltage(np.array(1.0), flows, **given) == pytest.approx(12 - 2.6, abs=1e-3)

@@ -17,11 +17,13 @@ from trochia.machine.motors.excitation import excitation
 from trochia.machine.motors.hybrid import FREE
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from trochia.analysis.sweep.timing import Timing
     from trochia.machine.drivers import Fed
     from trochia.machine.motors.shaft import ShaftLoad
+
+    Progress = Callable[[str, float], None] | None
 
 FIRST = 50.0  #: where the sketches begin [rpm]; a motor that does not get to twice as much begins lower
 FULL_STEPS = ("two-phase", "one-phase")
@@ -61,12 +63,15 @@ class Limits:
         }
 
 
-def limits(made: Fed, load: ShaftLoad = FREE, timing: Timing = TIMINGS["exact"], *, top: float) -> Limits:
-    """Return the limits of a motor in steps of 1 rpm, from 50 rpm (or a quarter of ``top``) to twice ``top`` [rad/s]."""
+def limits(
+    made: Fed, load: ShaftLoad = FREE, timing: Timing = TIMINGS["exact"], *, top: float, progress: Progress = None
+) -> Limits:
+    """Return a motor's limits in steps of 1 rpm, from 50 rpm or a quarter of ``top`` to twice ``top`` [rad/s]."""
     begin = max(1.0, min(FIRST, round(top * RPM / 4)))
     speeds = (np.arange(begin, 2 * top * RPM) / RPM).tolist()
-    out = pull_out_speed(made, speeds, load, timing)
-    start, first = start_stop_speeds(made, speeds, load, timing)
+    name = f"{made.excitation.name}, {timing.name}"
+    out = pull_out_speed(made, _told(speeds, f"{name}: pull-out", progress), load, timing)
+    start, first = start_stop_speeds(made, _told(speeds, f"{name}: start/stop", progress), load, timing)
     steps = made.motor.full_steps * made.excitation.steps_per_full_step
 
     def turned(speed: float) -> float:
@@ -77,13 +82,18 @@ def limits(made: Fed, load: ShaftLoad = FREE, timing: Timing = TIMINGS["exact"],
                   start_stop_first=first)  # fmt: skip
 
 
-def compare(made: Fed, load: ShaftLoad = FREE, *, top: float,
-            progress: Callable[[str, float], None] | None = None) -> list[Limits]:  # fmt: skip
+def compare(made: Fed, load: ShaftLoad = FREE, *, top: float, progress: Progress = None) -> list[Limits]:
     """Return the limits in full steps, both phases on and one, timed as the shield's library does and exactly."""
-    found: list[Limits] = []
-    for mode in FULL_STEPS:
-        for timing in COMPARED:
-            if progress is not None:
-                progress("searching limits", len(found) / (len(FULL_STEPS) * len(COMPARED)))
-            found.append(limits(replace(made, excitation=excitation(mode)), load, TIMINGS[timing], top=top))
-    return found
+    return [
+        limits(replace(made, excitation=excitation(mode)), load, TIMINGS[timing], top=top, progress=progress)
+        for mode in FULL_STEPS
+        for timing in COMPARED
+    ]
+
+
+def _told(speeds: list[float], label: str, progress: Progress) -> Iterator[float]:
+    """Yield speeds, telling how far one is; most searches end before the last."""
+    for i, speed in enumerate(speeds):
+        if progress is not None:
+            progress(label, i / len(speeds))
+        yield speed

@@ -47,8 +47,8 @@ def millisecond(period: float, steps: int) -> Floats:
 def shield(period: float, steps: int) -> Floats:
     """Return pulses after waits of whole milliseconds and the work of each step (steps + 1,) [s].
 
-    The wait counts from the end of the step's work: every step takes :data:`~trochia.pulses.latch.STEP_WORK` longer than
-    asked, and 200 rpm come out as 178.
+    The wait counts from the end of the step's work: every step takes ``pulses.latch.STEP_WORK`` longer than asked, and
+    200 rpm come out as 178.
     """
     return millisecond(period, steps) + STEP_WORK * np.arange(steps + 1)
 
