@@ -24,6 +24,7 @@ def exact(step: int) -> float:
 def sketch(terminal: Terminal) -> None:
     """Run it."""
     speed, time = FIRST, 0.0
+    terminal.say("step made at [ms]: by the library's rule, by constant acceleration")
     for done in range(STEPS // 2):
         speed = next_speed(speed, STEPS - done, ACCELERATION, ACCELERATION, SPEED)
         time += 1e3 / speed

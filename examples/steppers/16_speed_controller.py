@@ -19,7 +19,8 @@ NAMES = {"A": State.ACCEL, "R": State.RUN, "D": State.DECEL}
 def sketch(terminal: Terminal) -> None:
     """Run it."""
     plan = plan_move(600, 19.90, 30, 30, angle=ANGLE, clock=CLOCK)
-    terminal.say(f"c {plan.shortest:.2f}, c0 {plan.first:.2f}, n {plan.rising}, n1 {plan.limit}, n2 {plan.braking}")
+    delays, counts = (plan.shortest, plan.first), (plan.rising, plan.limit, plan.braking)
+    terminal.say("c {:.2f}, c0 {:.2f} us; n {}, n1 {}, n2 {} steps".format(*delays, *counts))
     motor = terminal.motor(1)
     controller, stored, delay = SpeedController(plan), State.STOP, None
     while True:
