@@ -114,7 +114,7 @@ def test_the_searches_end_where_the_motor_does(name: str, kind: str, first: str)
         int(re.search(rf"{kind} speed (\d+) rpm", converse(name, [], "--rpm", first, *options))[1])  # type: ignore[index]
         for options in ((), ("--exact",))
     ]
-    assert int(first) < found[0] < found[1] <= 300
+    assert int(first) < found[0] < found[1] <= 350
 
 
 def test_a_first_speed_that_is_too_fast_is_no_limit_found():
