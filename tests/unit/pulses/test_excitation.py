@@ -73,6 +73,8 @@ def test_torque_of_the_modes_at_rest():
     peaks = {name: EXCITATIONS[name].peak for name in EXCITATIONS}
     assert peaks["two-phase"] / peaks["one-phase"] == pytest.approx(math.sqrt(2))  # the usual 30 to 40 % more
     assert microstep(32).peak / peaks["two-phase"] == pytest.approx(1 / math.sqrt(2))  # the usual 30 % less
+    half = np.hypot(*EXCITATIONS["half-step"].levels.T).mean()  # one phase and both in turn
+    assert half / peaks["two-phase"] == pytest.approx(0.85, abs=0.01)  # the usual 15 % less
 
 
 @pytest.mark.parametrize("name", MODES)
