@@ -108,8 +108,8 @@ def _draw_limits(axes: Axes, made: Curve) -> None:
     marks = {
         "corner": made.made.corner,
         "start/stop (estimate)": made.start_stop or None,
-        "pull-out speed": made.limits.get("pull_out"),
-        "start/stop speed": made.limits.get("start_stop"),
+        "pull-out speed": made.limits.get("pull_out") or None,
+        "start/stop speed": made.limits.get("start_stop") or None,
     }
     right = made.speeds[-1]
     last, row = -right, 0
