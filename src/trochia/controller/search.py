@@ -259,7 +259,8 @@ def rounds(axes: Iterable[Axis]) -> list[list[Axis]]:
     """Return the axes that go home together, round by round: those of one order that may."""
 
     def order(axis: Axis) -> int:
-        return axis.home.order if axis.home else 0
+        told = None if axis.home is None else axis.home.order
+        return int(axis.name != "Z") if told is None else told
 
     made: list[list[Axis]] = []
     for _, equal in groupby(sorted(axes, key=order), key=order):

@@ -46,7 +46,8 @@ class Homing:
     rest
         Where the axis goes afterwards; None: it stays.
     order
-        Lower orders first; axes of equal order together.
+        Lower orders first; axes of equal order together.  None: Z first (0), as it has to leave the work, then the
+        others (1).
     second, square
         The home switch of a gantry's second joint, by its name under [io], and what that joint reads there less what
         the first reads at its own, when the gantry is square [mm or degree].
@@ -75,8 +76,11 @@ class Homing:
     rest: float | None = field(
         default=None, metadata=key(Quantity("length", motion=True), "where the axis goes afterwards; else it stays")
     )
-    order: int = field(
-        default=0, metadata=key(Whole(), "lower ones first; axes of one order together", Bound.NOT_NEGATIVE)
+    order: int | None = field(
+        default=None,
+        metadata=key(
+            Whole(), "lower ones first, axes of one order together; else Z is 0 and the others 1", Bound.NOT_NEGATIVE
+        ),
     )
     second: str | None = field(default=None, metadata=key(Text(), "home switch of a gantry's second joint, under [io]"))
     square: float = field(

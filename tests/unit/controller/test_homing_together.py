@@ -43,6 +43,12 @@ def at_rest(b, machine: Machine) -> None:
     assert all(axis.trusted for axis in b.status.axes)
 
 
+@pytest.fixture
+def level_mill(homed_mill: Machine) -> Machine:
+    """The mill whose axes are all of one order."""
+    return homes(homed_mill, **{axis.name: {"order": 0} for axis in homed_mill.axes})
+
+
 STARTS = [
     (0.0, 0.0, 0.0),
     (-3.0, -140.0, 20.0),
@@ -53,26 +59,27 @@ STARTS = [
 
 
 @pytest.mark.parametrize("start", STARTS)
-def test_axes_together_find_their_places_as_well_as_alone(bench, homed_mill: Machine, start: tuple[float, ...]) -> None:
-    real = {axis.name: axis.minimum + 60.0 + way for axis, way in zip(homed_mill.axes, start, strict=True)}
-    real = {name: max(at, axis.minimum + 0.2) for (name, at), axis in zip(real.items(), homed_mill.axes, strict=True)}
-    b = bench(homed_mill, real=real).on()
+def test_axes_together_find_their_places_as_well_as_alone(bench, level_mill: Machine, start: tuple[float, ...]) -> None:
+    real = {axis.name: axis.minimum + 60.0 + way for axis, way in zip(level_mill.axes, start, strict=True)}
+    real = {name: max(at, axis.minimum + 0.2) for (name, at), axis in zip(real.items(), level_mill.axes, strict=True)}
+    b = bench(level_mill, real=real).on()
     b.ok(c.Home())
     b.run(until="idle")
-    at_rest(b, homed_mill)
+    at_rest(b, level_mill)
 
 
-def test_switches_that_trip_in_the_same_instant_are_told_apart(bench, homed_mill: Machine) -> None:
+def test_switches_that_trip_in_the_same_instant_are_told_apart(bench, level_mill: Machine) -> None:
     same = {"search": 20.0, "latch": 2.0}
-    machine = homes(homed_mill, X=same, Y=same, Z=same)
+    machine = homes(level_mill, X=same, Y=same, Z=same)
     b = bench(machine, real={axis.name: axis.minimum + 30.0 for axis in machine.axes}).on()
     b.ok(c.Home())
     b.run(until="idle")
     at_rest(b, machine)
 
 
-def test_axes_of_one_order_move_at_once_and_of_two_orders_do_not(bench, homed_mill: Machine) -> None:
-    machine = homes(homed_mill, X={"order": 1}, Y={"order": 1})
+@pytest.mark.parametrize("orders", [{}, {"X": 3, "Y": 3, "Z": 2}])
+def test_z_leaves_the_work_first_or_whom_the_file_says(bench, homed_mill: Machine, orders: dict[str, int]) -> None:
+    machine = homes(homed_mill, **{axis: {"order": order} for axis, order in orders.items()})
     b = bench(machine, real={axis.name: axis.minimum + 40.0 for axis in machine.axes}).on()
     begin = len(b.trace)
     b.ok(c.Home())
@@ -84,7 +91,7 @@ def test_axes_of_one_order_move_at_once_and_of_two_orders_do_not(bench, homed_mi
     at_rest(b, machine)
 
 
-def test_together_takes_little_more_than_the_longest(bench, homed_mill: Machine) -> None:
+def test_together_takes_little_more_than_the_longest(bench, level_mill: Machine) -> None:
     def taken(machine: Machine, *axes: str) -> float:
         b = bench(machine, real={axis.name: axis.minimum + 40.0 for axis in machine.axes}).on()
         begin = b.now
@@ -92,12 +99,12 @@ def test_together_takes_little_more_than_the_longest(bench, homed_mill: Machine)
         b.run(until="idle")
         return b.now - begin
 
-    alone = [taken(homed_mill, axis.name) for axis in homed_mill.axes]
-    assert taken(homed_mill) < 1.5 * max(alone) < sum(alone)
+    alone = [taken(level_mill, axis.name) for axis in level_mill.axes]
+    assert taken(level_mill) < 1.5 * max(alone) < sum(alone)
 
 
-def test_the_search_goes_at_the_speed_of_each(bench, homed_mill: Machine) -> None:
-    machine = homes(homed_mill, X={"search": 12.0}, Y={"search": 30.0})
+def test_the_search_goes_at_the_speed_of_each(bench, level_mill: Machine) -> None:
+    machine = homes(level_mill, X={"search": 12.0}, Y={"search": 30.0})
     b = bench(machine, real={"X": machine.axes[0].minimum + 150.0, "Y": machine.axes[1].minimum + 150.0}).on()
     b.ok(c.Home(axes=("X", "Y")))
     b.run(2.0)
@@ -105,8 +112,8 @@ def test_the_search_goes_at_the_speed_of_each(bench, homed_mill: Machine) -> Non
     np.testing.assert_allclose(velocity[:2], [-12.0, -30.0], rtol=1e-3)
 
 
-def test_a_switch_that_is_not_found_stops_all_and_names_its_axis(bench, homed_mill: Machine) -> None:
-    b = bench(homed_mill, real={axis.name: axis.minimum + 40.0 for axis in homed_mill.axes})
+def test_a_switch_that_is_not_found_stops_all_and_names_its_axis(bench, level_mill: Machine) -> None:
+    b = bench(level_mill, real={axis.name: axis.minimum + 40.0 for axis in level_mill.axes})
     b.twin._switches |= {"home-Y": lambda _: False, "limit-Y": lambda _: False}
     b.on().ok(c.Home())
     b.run(until="alarm")
@@ -117,8 +124,8 @@ def test_a_switch_that_is_not_found_stops_all_and_names_its_axis(bench, homed_mi
     assert not b.runtime.controller.report.velocity.any()
 
 
-def test_a_limit_met_by_one_stops_all(bench, homed_mill: Machine) -> None:
-    b = bench(homed_mill, real={axis.name: axis.minimum + 40.0 for axis in homed_mill.axes})
+def test_a_limit_met_by_one_stops_all(bench, level_mill: Machine) -> None:
+    b = bench(level_mill, real={axis.name: axis.minimum + 40.0 for axis in level_mill.axes})
     b.twin._switches["home-X"] = lambda _: False
     b.on().ok(c.Home())
     status = b.run(until="alarm")
@@ -127,8 +134,8 @@ def test_a_limit_met_by_one_stops_all(bench, homed_mill: Machine) -> None:
     assert not b.runtime.controller.report.velocity.any()
 
 
-def test_a_belt_over_both_motors_is_homed_in_both_directions_at_once(bench, homed_mill: Machine) -> None:
-    machine = replace(homed_mill, kinematics=CoreXY(3))
+def test_a_belt_over_both_motors_is_homed_in_both_directions_at_once(bench, level_mill: Machine) -> None:
+    machine = replace(level_mill, kinematics=CoreXY(3))
     start = np.array([axis.minimum + way for axis, way in zip(machine.axes, (33.0, 21.0, 12.0), strict=True)])
     real = dict(zip((j.name for j in machine.joints), machine.kinematics.matrix @ start, strict=True))
     b = bench(machine, real=real).on()
@@ -142,17 +149,17 @@ def names(machine: Machine) -> list[list[str]]:
     return [[axis.name for axis in some] for some in rounds(machine.axes)]
 
 
-def test_axes_that_share_a_switch_go_by_turns(homed_mill: Machine) -> None:
-    assert names(homed_mill) == [["X", "Y", "Z"]]
-    assert names(homes(homed_mill, Y={"input": "home-X"})) == [["X", "Z"], ["Y"]]
+def test_axes_that_share_a_switch_go_by_turns(level_mill: Machine) -> None:
+    assert names(level_mill) == [["X", "Y", "Z"]]
+    assert names(homes(level_mill, Y={"input": "home-X"})) == [["X", "Z"], ["Y"]]
 
 
-def test_an_axis_that_would_brake_too_far_for_another_goes_by_itself(homed_mill: Machine) -> None:
-    slow = replace(homed_mill.axes[2], acceleration=20.0)
-    assert names(replace(homed_mill, axes=(*homed_mill.axes[:2], slow))) == [["X", "Y"], ["Z"]]
+def test_an_axis_that_would_brake_too_far_for_another_goes_by_itself(level_mill: Machine) -> None:
+    slow = replace(level_mill.axes[2], acceleration=20.0)
+    assert names(replace(level_mill, axes=(*level_mill.axes[:2], slow))) == [["X", "Y"], ["Z"]]
 
 
-def test_an_axis_whose_limit_stands_close_behind_goes_by_itself(homed_mill: Machine) -> None:
-    x = homed_mill.axes[0]
+def test_an_axis_whose_limit_stands_close_behind_goes_by_itself(level_mill: Machine) -> None:
+    x = level_mill.axes[0]
     x = replace(x, limit_minus=LimitSwitch(input="limit-X", at=x.minimum + 0.9999))
-    assert names(replace(homed_mill, axes=(x, *homed_mill.axes[1:]))) == [["X"], ["Y", "Z"]]
+    assert names(replace(level_mill, axes=(x, *level_mill.axes[1:]))) == [["X"], ["Y", "Z"]]
