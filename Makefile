@@ -96,7 +96,8 @@ golden: setup-test
 
 # every law and every comparison, on a hundred times as many cases, with a seed that is printed; then SOAK mutated
 # G-code programs and PLANS random programs to plan, from SOAK_SEED on, and some of them against rs274; FAULTS faults on
-# the line to a board, and some on its image; STEPS steps of its image counted at its pins
+# the line to a board, and some on its image; what is said of lost steps against the twin; STEPS steps of the image
+# counted at its pins
 soak: setup-test
 	$(BIN)/python -m pytest -q --hypothesis-profile=soak tests/properties tests/oracle
 	$(BIN)/python tests/soak/identify_axes.py --count 10 --seed 2026
@@ -106,6 +107,7 @@ soak: setup-test
 	$(BIN)/python tests/soak/kills.py --count 200 --seed $(SOAK_SEED)
 	$(BIN)/python tests/soak/faults.py --count $(FAULTS) --seed $(SOAK_SEED) --jobs $(JOBS)
 	$(BIN)/python tests/soak/faults.py --count 2000 --seed $(SOAK_SEED) --jobs $(JOBS) --image
+	$(BIN)/python tests/soak/lost_steps.py --count 1000 --seed $(SOAK_SEED) --jobs $(JOBS)
 	$(BIN)/python tests/soak/dead_hosts.py --count 200 --seed $(SOAK_SEED)
 	$(BIN)/python tests/soak/steps_on_chip.py --steps $(STEPS) --seed $(SOAK_SEED) --jobs $(JOBS)
 	$(BIN)/python tests/soak/compare_gcode.py --count 10000 --seed $(SOAK_SEED) --jobs $(JOBS)

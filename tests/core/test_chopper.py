@@ -144,7 +144,7 @@ def test_a_coupling_swings_at_its_resonance():
 def test_stiff_couplings_and_ticks_beyond_the_motor_are_refused():
     made = fed(BIG, HBridge(supply=12.0))
     with pytest.raises(ConfigError, match="too long for this motor and load"):
-        StepperTwin(made, LOAD, coupling=Coupling(stiffness=1e7))
+        StepperTwin(made, LOAD, coupling=Coupling(stiffness=1e7), step=20e-6)
     with pytest.raises(ConfigError, match="needs an inertia"):
         StepperTwin(made, FREE, coupling=Coupling(stiffness=10.0))
     with pytest.raises(ConfigError, match="above zero"):

@@ -23,6 +23,8 @@ from trochia.errors import LimitError
 from trochia.machine.motors.hybrid import FREE
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from trochia.machine.motors import HybridStepper, ShaftLoad
 
 
@@ -61,6 +63,24 @@ def growth_rate(motor: HybridStepper, omega: float, voltage: float, load: ShaftL
     LimitError
         As :func:`steady_angle`.
     """
+    return float(_modes(motor, omega, voltage, load).real.max())
+
+
+def swing_mode(motor: HybridStepper, omega: float, voltage: float, load: ShaftLoad = FREE) -> complex:
+    """Return how a small swing goes on, exp(λ t) [1/s]: decay or growth, and frequency [rad/s], of the slowest one.
+
+    Raises
+    ------
+    LimitError
+        As :func:`steady_angle`.
+    """
+    modes = _modes(motor, omega, voltage, load)
+    slowest = modes[int(np.argmax(modes.real))]
+    return complex(slowest.real, abs(slowest.imag))
+
+
+def _modes(motor: HybridStepper, omega: float, voltage: float, load: ShaftLoad) -> NDArray[np.complexfloating]:
+    """Return the eigenvalues of the linearised equations (4,)."""
     d = steady_angle(motor, omega, voltage, load)
     r, x = motor.resistance, motor.teeth * omega * motor.inductance
     v_d, v_q = -voltage * math.sin(d), voltage * math.cos(d) - motor.torque_constant * omega
@@ -72,4 +92,4 @@ def growth_rate(motor: HybridStepper, omega: float, voltage: float, load: ShaftL
         [0.0, k / inertia, -(motor.viscous + load.viscous) / inertia, 0.0],
         [0.0, 0.0, -p, 0.0],
     ])  # fmt: skip
-    return float(np.linalg.eigvals(matrix).real.max())
+    return np.asarray(np.linalg.eigvals(matrix), np.complex128)

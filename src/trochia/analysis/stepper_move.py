@@ -32,7 +32,6 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-MOST_ANGLE = 60.0  #: load angle up to which a stepper holds like a spring [electrical degree]
 SAFE = 0.95  #: of a speed at which the torque is used up: nearer to it ramps have no end
 POINTS = 400  #: of a motor's torque curve as the law `torque` takes it
 _HAIR = 1.0 + 1e-9
@@ -65,7 +64,7 @@ class MoveUse:
     hunts
         Speed from which a small disturbance grows, below the greatest of the move [steps/s]; None: nowhere.
     swing
-        Greatest load angle as the rotor swings, by linear theory [electrical degree]; 0 where it cannot be told.
+        Greatest swing of the rotor, by linear theory, as a part of what is safe; 0 where it cannot be told.
     resonance
         Speed at which full steps follow each other as fast as the rotor swings [steps/s].
     first, last, peak
@@ -253,7 +252,7 @@ def _hunts(shaft: Drive, peak: float, angle: float) -> float | None:
 
 
 def _swing(made: Profile, shaft: Drive, natural: float) -> float:
-    """Return the greatest load angle of the swing by linear theory [electrical degree]; 0 where it cannot be told."""
+    """Return the greatest swing by linear theory, as a part of what is safe; 0 where it cannot be told."""
     step = max(0.05 / natural, made.duration / 200_000)
     count = math.ceil(made.duration / step)
     if count < 2 or step * natural > 0.1:
@@ -262,9 +261,10 @@ def _swing(made: Profile, shaft: Drive, natural: float) -> float:
     middles, angle = made.times - 0.5 * made.delays, made.demand.step_angle
     speed, acceleration = _motion(made, 0.25 / natural)
     row = np.clip(np.searchsorted(middles, instants, side="right") - 1, 0, speed.size - 1)
-    swing = Swing(shaft, step)
-    swing.take(speed[row] * angle, acceleration[row] * angle, row.astype(np.uint32))
-    return swing.peak
+    place = np.interp(instants, np.concatenate([[0.0], made.times]), np.arange(made.times.size + 1)) * angle
+    swing = Swing(shaft, step, made.peak * angle, 1.0 / angle)
+    swing.take(place, speed[row] * angle, acceleration[row] * angle, row.astype(np.uint32))
+    return swing.part
 
 
 def figures(use: MoveUse, turn: float) -> dict[str, Any]:
@@ -283,7 +283,7 @@ def figures(use: MoveUse, turn: float) -> dict[str, Any]:
         "stalls_rpm": use.stalls * rpm if math.isfinite(use.stalls) else None,
         "usable_rpm": use.usable * rpm if math.isfinite(use.usable) else None,
         "hunts_from_rpm": None if use.hunts is None else use.hunts * rpm,
-        "swing_deg": use.swing,
+        "swing": use.swing,
         "resonance_rpm": use.resonance * rpm,
         "problems": list(use.too_hot),
     }

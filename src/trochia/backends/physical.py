@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from trochia.backends.stepper_twin import STEP, Levels, StepperTwin
+from trochia.backends.stepper_twin import Levels, StepperTwin, longest_step
 from trochia.kernels.twin import TwinBlock, TwinJoint
 from trochia.machine.torque import drive
 from trochia.planner import Trajectory
@@ -52,7 +52,7 @@ class PhysicalJoint:
         assert steps is not None, "a joint with a stepper's driver has steps"
         self._per_unit, self._begin = float(steps), count
         looks = math.ceil(period / LOOK)
-        self._every = math.ceil(period / looks / STEP)
+        self._every = math.ceil(period / looks / longest_step(motor.made, motor.load))
         self._looks, self._tick = looks, period / looks / self._every
         self._stepper = StepperTwin(motor.made, motor.load, levels=LEVELS, step=self._tick)
         self._stepper.run_ticks(round(SETTLING / self._tick))

@@ -18,6 +18,7 @@ import numpy as np
 
 from trochia.errors import ConfigError
 from trochia.kernels.stepper import CouplingConstants, DriverConstants, Mode, StepperConstants, StepperKernel
+from trochia.kernels.stepper import longest_step as longest_of
 from trochia.machine.drivers.bridge import KNEE
 from trochia.machine.motors.hybrid import FREE
 from trochia.machine.motors.shaft import CREEP
@@ -97,7 +98,8 @@ class StepperTwin:
     load
         On the shaft, or behind the coupling where there is one.
     step
-        Time step of voltage drives and of the averaged chopper [s]; the switching takes some 1 us.
+        Time step of voltage drives and of the averaged chopper [s]; 20 us where not given, or what motor and
+        load stand.  The switching takes some 1 us.
     angle
         Where the rotor stands at power-up [electrical rad from the first row]; the phases pull it to the nearest stable
         point, up to two full steps away.
@@ -122,13 +124,14 @@ class StepperTwin:
         *,
         coupling: Coupling | None = None,
         levels: Levels = Levels(),
-        step: float = STEP,
+        step: float | None = None,
         angle: float = 0.0,
         enabled: bool = True,
     ) -> None:
         self.made, self.levels, self._coupling = made, levels, coupling
         if coupling is not None and not load.inertia > 0:
             raise ConfigError("a load behind a coupling needs an inertia above zero", key="load.inertia")
+        step = longest_step(made, load, coupling) if step is None else step
         aligned = np.array([0.0, 0.0, (made.excitation.first_angle + angle) / made.motor.teeth, 0.0])
         self._kernel = StepperKernel(
             _motor(made.motor, load, coupling), _driver(made, step), made.excitation.levels, aligned,
@@ -234,6 +237,12 @@ class StepperTwin:
             lost_steps=self.made.lost_steps(field, theta, omega),
             load_theta=state[:, 4],
         )
+
+
+def longest_step(made: Fed, load: ShaftLoad = FREE, coupling: Coupling | None = None) -> float:
+    """Return the time step that a twin of them takes [s]: 20 us, or what they stand if that is less."""
+    stands = longest_of(_motor(made.motor, load, coupling), _behind(load, coupling))
+    return min(STEP, stands)
 
 
 def _motor(motor: HybridStepper, load: ShaftLoad, coupling: Coupling | None) -> StepperConstants:

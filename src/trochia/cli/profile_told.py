@@ -192,7 +192,7 @@ def _show_motor(found: Found, motor: Asked) -> None:
     if use.hunts is not None:
         lines.append(("hunts", f"from {demand.said(use.hunts)} on by linear theory: there it may fall out of step"))
     if use.swing:
-        lines.append(("swings", f"to {use.swing:.0f}° of load angle by linear theory; beyond 60° steps may be lost"))
+        lines.append(("swings", f"{use.swing:.0%} of what is safe, by linear theory"))
     if use.resonance < use.peak and motor.made.excitation.steps_per_full_step <= 2:
         lines.append(("resonates", f"at {demand.said(use.resonance)}, which the ramp passes"))
     lines += [("too hot", text) for text in use.too_hot]

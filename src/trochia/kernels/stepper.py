@@ -89,6 +89,18 @@ class StepperSamples:
     position: NDArray[np.int64]
 
 
+def longest_step(motor: StepperConstants, coupling: CouplingConstants = NO_COUPLING) -> float:
+    """Return the longest time step that a motor and its load stand [s]: dry friction on a light rotor is stiff."""
+    drag = motor.viscous + (motor.friction / motor.creep if motor.friction else 0.0)
+    fastest = [motor.inductance / motor.resistance, motor.inertia / drag if drag else np.inf]
+    if coupling.stiffness > 0:
+        behind = coupling.viscous + (coupling.friction / motor.creep if coupling.friction else 0.0)
+        least = min(motor.inertia, coupling.inertia)
+        fastest += [coupling.inertia / behind if behind else np.inf, np.sqrt(least / coupling.stiffness),
+                    least / coupling.damping if coupling.damping else np.inf]  # fmt: skip
+    return STIFFEST * float(min(fastest))
+
+
 class StepperKernel:
     """One motor at time zero.
 
@@ -142,17 +154,11 @@ class StepperKernel:
 
     def set_motor(self, motor: StepperConstants, coupling: CouplingConstants = NO_COUPLING) -> None:
         """Change the motor or its load from here on; ConfigError as the class."""
-        drag = motor.viscous + (motor.friction / motor.creep if motor.friction else 0.0)
-        fastest = [motor.inductance / motor.resistance, motor.inertia / drag if drag else np.inf]
-        if coupling.stiffness > 0:
-            behind = coupling.viscous + (coupling.friction / motor.creep if coupling.friction else 0.0)
-            least = min(motor.inertia, coupling.inertia)
-            fastest += [coupling.inertia / behind if behind else np.inf, np.sqrt(least / coupling.stiffness),
-                        least / coupling.damping if coupling.damping else np.inf]  # fmt: skip
-        if not self.step <= STIFFEST * min(fastest):
+        longest = longest_step(motor, coupling)
+        if not self.step <= longest:
             raise ConfigError(
                 f"a time step of {self.step * 1e6:g} us is too long for this motor and load; "
-                f"it needs {STIFFEST * min(fastest) * 1e6:.3g} us or less"
+                f"it needs {longest * 1e6:.3g} us or less"
             )
         _fill(self._motor, motor)
         _fill(self._coupling, coupling)

@@ -67,9 +67,12 @@ class Drive:
 
     def braking(self, velocity: Floats) -> Floats:
         """Return the greatest braking torque before it falls out of step (...) [N·m]: frictions help here."""
-        friction = self.made.motor.friction + self.load.friction
+        return self.available(velocity) + 2 * self.frictions(velocity)
+
+    def frictions(self, velocity: Floats) -> Floats:
+        """Return what frictions of motor and load take at joint velocities (...) [N·m], dry and viscous."""
         viscous = (self.made.motor.viscous + self.load.viscous) * np.abs(velocity / self.per_radian)
-        return self.available(velocity) + 2 * (friction + viscous)
+        return self.made.motor.friction + self.load.friction + viscous
 
     def used(self, velocity: Floats, acceleration: Floats) -> Floats:
         """Return which part of the torque there is a motion uses (...): above 1 it loses steps."""

@@ -7,7 +7,7 @@ import pytest
 
 from trochia import api, recorder
 from trochia.analysis.errors import lost_steps
-from trochia.analysis.swing import Swing
+from trochia.analysis.swing import SAFE, Swing
 from trochia.backends.twin import Twin
 from trochia.machine.load import loads
 from trochia.machine.torque import drive
@@ -43,17 +43,20 @@ def test_the_part_used_is_newton_s():
     assert verdict.figures()["margins"]["X"]["torque"] == pytest.approx(1 - use.used)
 
 
-def test_a_step_of_torque_swings_to_twice_its_angle_and_damping_takes_it_down():
-    motor = drive(loads(STAGE.replace("8 N", "0 N")), 0)
+@pytest.mark.parametrize(("part", "swing"), [(0.3, 0.196), (0.72, 0.889)])
+def test_a_step_of_torque_swings_by_its_angle_and_at_0_72_it_nearly_goes_over_the_top(part: float, swing: float):
+    """Of the energy from r = asin f to the top, 2 cos r - (π - 2 r) sin r, a swing of r takes ½ cos r r²."""
+    motor = drive(loads(STAGE.replace("8 N", "0 N").replace("microsteps = 16", "microsteps = 256")), 0)
     assert motor is not None
-    swing = Swing(motor, 1e-4)
+    step = 1e-4
+    found = Swing(motor, step, 100.0, 256 * 200 / 40)
     n = 5000
-    velocity, line = np.full(n, 1.0), np.ones(n, np.uint32)
-    part = 0.3
+    place, velocity, line = 1.0 * step * np.arange(n), np.full(n, 1.0), np.ones(n, np.uint32)
     acceleration = part * float(motor.available(np.array(1.0))) / motor.inertia * motor.per_radian
-    swing.take(np.zeros(10), np.zeros(10), line[:10])
-    swing.take(velocity, np.full(n, acceleration), line)
-    assert swing.peak == pytest.approx(2 * np.degrees(np.arcsin(part)), rel=0.01)
+    found.take(np.zeros(10), np.zeros(10), np.zeros(10), line[:10])
+    found.take(place, velocity, np.full(n, acceleration), line)
+    assert found.part * SAFE == pytest.approx(swing, abs=0.03)  # the field steps, and the chopper ripples
+    assert not found.grows
 
 
 @pytest.mark.parametrize(
@@ -70,7 +73,7 @@ def test_what_the_check_passes_without_a_word_loses_nothing_on_the_twin(current:
     recording = recorder.gather(twin.header(motion), twin.run(motion))
     lost = lost_steps(recording, machine)["X"]
     codes = {problem.code for problem in verdict.problems}
-    if not codes & {"steps-lost", "rotor-swings"}:
+    if not codes & {"steps-lost", "rotor-swings", "motor-unsteady"}:
         assert lost == 0
     assert lost % 4 == 0
     if "steps-lost" in codes:  # lost on the way; what is lost there and back may come out even

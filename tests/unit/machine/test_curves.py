@@ -114,3 +114,17 @@ def test_current_and_voltage_limits_together_are_the_best_point_of_both_discs(fu
     best = stepper.torque_constant * float(i_q[allowed].max())
     found = float(pull_out_torque(stepper, np.array(omega), volts, current=amps))
     assert found == pytest.approx(best, abs=stepper.torque_constant * 0.01)
+
+
+@pytest.mark.parametrize(("volts", "amps"), [(12.0, 0.6), (24.0, 1.0), (48.0, 3.0)])
+def test_torque_falls_with_speed_and_beyond_a_current_that_back_emf_exceeds_there_is_none(volts: float, amps: float):
+    """Where all currents that the voltage allows are above the one that is set, the motor does not run."""
+    stepper = MOTORS["QSH5718-79"]
+    speed = np.linspace(0.0, 2000.0, 4001)
+    torque = pull_out_torque(stepper, speed, volts, current=amps)
+    runs = torque > 0
+    assert (np.diff(torque[runs]) <= 1e-9).all()
+    assert not (~runs[:-1] & runs[1:]).any()
+    least = (stepper.torque_constant * speed - volts) / np.abs(stepper.impedance(speed))  # flows whatever is set [A]
+    assert (torque[least > amps] < 0).all()
+    assert (least[-1] > amps) == (torque[-1] < 0)

@@ -106,7 +106,9 @@ def test_fastest_is_where_the_load_takes_all():
     omega = made.fastest(load)
     assert float(made.pull_out(np.array(omega), load)) == pytest.approx(0.2, rel=1e-6)
     assert made.fastest(ShaftLoad(constant=5.0)) == 0.0
-    assert made.fastest() == math.inf
+    # fast enough, the magnet drives K/(p L), 2.2 A, through the coils by itself: more than the 2 A that are set
+    assert made.fastest() < math.inf
+    assert fed(BIG, Chopper(supply=24.0, current=2.5), 16).fastest() == math.inf
 
 
 def test_bad_currents_name_what_would_do():

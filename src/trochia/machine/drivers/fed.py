@@ -181,7 +181,8 @@ class Fed:
         """Return the speed at which the load takes all torque, without acceleration [rad/s]; 0: it never runs.
 
         The torque falls steadily with speed, so halving finds it.  Without friction a sinusoidal voltage keeps some
-        torque at any speed where V > K R/(p L): the answer is then infinite, and something else ends it.
+        torque at any speed where V > K R/(p L), and a current that is set above K/(p L) is not exceeded by what the
+        magnet drives: the answer is then infinite, and something else ends it.
         """
         against = abs(load.constant)
 

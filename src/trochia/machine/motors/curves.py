@@ -67,8 +67,8 @@ def _limited(motor: HybridStepper, speed: Array, voltage: float, current: float,
 
     In the plane of (i_d, i_q) the current limit is a disc of radius I about zero, the voltage limit one of radius V/|Z|
     about -K w (X, R)/|Z|².  The greatest i_q of both lies on top of either disc, where that lies in the other, or where
-    the two circles cross.  Discs that do not meet: no running at that speed, and ``across``, below zero then or not the
-    better of the two, is what is left.
+    the two circles cross.  Discs that do not meet: back-EMF drives more than the current that is set, and there is no
+    running at that speed; the point of the current's disc next to the other has i_q below zero, and goes on from there.
     """
     z = motor.impedance(speed)
     size = np.abs(z)
@@ -78,11 +78,10 @@ def _limited(motor: HybridStepper, speed: Array, voltage: float, current: float,
     on_top = np.hypot(d, current - q) <= radius  # the current's own best point needs no more than the voltage
     inside = np.hypot(d, across) <= current  # the voltage's own best point needs no more than the current
     safe = np.where(apart > 0, apart, 1.0)
-    along = (current**2 - radius**2 + apart**2) / (2 * safe)
+    along = np.clip((current**2 - radius**2 + apart**2) / (2 * safe), -current, current)
     beside = np.sqrt(np.maximum(current**2 - along**2, 0.0))
     crossing = along * q / safe + beside * np.abs(d) / safe
-    meet = np.abs(along) <= current
-    return np.where(on_top, current, np.where(inside | ~meet, np.minimum(across, current), crossing))
+    return np.where(on_top, current, np.where(inside, np.minimum(across, current), crossing))
 
 
 def corner_speed(motor: HybridStepper, voltage: float, current: float | None = None) -> float:
