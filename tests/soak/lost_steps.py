@@ -43,7 +43,8 @@ if TYPE_CHECKING:
 
 LIBRARY = ("SM-42BYG011-25", "QSH5718-41", "QSH5718-55", "QSH5718-79")
 SUPPLIES = {"SM-42BYG011-25": (9.0, 24.0)}  #: of voltage drives [V]; the others' coils take a few volts only
-CODES = {"steps-lost": "lost", "rotor-swings": "warned", "motor-unsteady": "warned", "hold-too-weak": "warned"}
+WARNINGS = ("rotor-swings", "motor-unsteady", "hold-too-weak", "current-floor")
+CODES = {"steps-lost": "lost"} | dict.fromkeys(WARNINGS, "warned")
 ROOM = 150.0  #: travel either way [mm]
 NEAR = 0.05  #: lines in motion so near in time are one [s]
 MOST_SPEED = 210.0  #: of a shaft, 2000 rpm [rad/s]
