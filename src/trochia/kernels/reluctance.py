@@ -13,6 +13,7 @@ import numpy as np
 
 from trochia.errors import ConfigError, LimitError
 from trochia.kernels.layout import ffi, lib, pointer
+from trochia.kernels.pulses import Pulses
 from trochia.kernels.stepper import STIFFEST, StepperSamples
 
 if TYPE_CHECKING:
@@ -79,7 +80,7 @@ class ReluctanceKernel:
         self._motor = ffi.new("trochia_reluctance *")
         self.set_constants(constants)
         self._state = ffi.new("trochia_reluctance_state *", {"theta": float(theta)})
-        self._times, self._signs = np.empty(0), np.empty(0, np.int8)
+        self._pulses = Pulses()
 
     def set_constants(self, constants: ReluctanceConstants) -> None:
         """Change the motor, its switches or its load from here on; the phases stay as many.
@@ -112,14 +113,7 @@ class ReluctanceKernel:
         LimitError
             When they do not rise from the last one queued, or from now.
         """
-        times, signs = np.asarray(times, np.float64), np.asarray(directions, np.int8)
-        if times.ndim != 1 or times.shape != signs.shape or not (np.abs(signs) == 1).all():
-            raise ValueError("expected instants (pulses,) with a direction of 1 or -1 for each")
-        first = float(self._times[-1]) if len(self._times) else self.now
-        if len(times) and not (first <= times[0] and times[-1] < np.inf and (np.diff(times) >= 0).all()):
-            raise LimitError(f"step pulses must rise from {first:g} s on")
-        self._times = np.concatenate([self._times, times])
-        self._signs = np.concatenate([self._signs, signs])
+        self._pulses = self._pulses.followed(times, directions, self.now)
 
     def run(self, ticks: int, *, every: int = 1) -> StepperSamples:
         """Go on for some time steps and return every ``every``-th sample; states are (samples, phases + 2).
@@ -131,14 +125,14 @@ class ReluctanceKernel:
         """
         if ticks < 0 or every < 1:
             raise ValueError(f"expected ticks >= 0 and every >= 1, not {ticks} and {every}")
-        state, begin, rows = self._state, self._state.tick, ticks // every
+        state, begin, rows, coming = self._state, self._state.tick, ticks // every, self._pulses
         samples, positions = np.empty((rows, self.phases + 2)), np.empty(rows, np.int64)
         taken = lib.trochia_reluctance_run(
             self._motor, state, pointer(self._words, "const uint32_t *"), len(self._words),
-            pointer(self._times, "const double *"), pointer(self._signs, "const int8_t *"), len(self._times),
+            pointer(coming.times, "const double *"), pointer(coming.signs, "const int8_t *"), len(coming),
             self.step, ticks, every, pointer(samples, "double *"), pointer(positions, "int64_t *"),
         )  # fmt: skip
-        self._times, self._signs = self._times[taken:], self._signs[taken:]
+        self._pulses = coming.behind(taken)
         if not np.isfinite([*state.current, state.theta, state.omega]).all():
             raise LimitError("the motor's state is no longer a number; take a shorter time step")
         time = (begin + every * np.arange(1, rows + 1)) * self.step

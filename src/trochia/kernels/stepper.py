@@ -14,6 +14,7 @@ import numpy as np
 
 from trochia.errors import ConfigError, LimitError
 from trochia.kernels.layout import ffi, lib, pointer
+from trochia.kernels.pulses import Pulses
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -150,7 +151,7 @@ class StepperKernel:
             "current_a": a, "current_b": b, "theta": theta, "omega": omega, "load_theta": theta, "load_omega": omega,
             "position": position,
         })  # fmt: skip
-        self._times, self._signs = np.empty(0), np.empty(0, np.int8)
+        self._pulses = Pulses()
 
     def set_motor(self, motor: StepperConstants, coupling: CouplingConstants = NO_COUPLING) -> None:
         """Change the motor or its load from here on; ConfigError as the class."""
@@ -180,11 +181,11 @@ class StepperKernel:
 
     def save(self) -> Any:  # noqa: ANN401 - opaque: only for restore
         """Return the state and the queued pulses, for :meth:`restore`."""
-        return ffi.new("trochia_stepper_state *", self._state[0]), self._times, self._signs
+        return ffi.new("trochia_stepper_state *", self._state[0]), self._pulses
 
     def restore(self, saved: Any) -> None:  # noqa: ANN401 - what save returned
         """Go back to a state that was saved."""
-        state, self._times, self._signs = saved
+        state, self._pulses = saved
         self._state[0] = state[0]
 
     def queue(self, times: NDArray[np.float64], directions: NDArray[np.int8]) -> None:
@@ -195,14 +196,7 @@ class StepperKernel:
         LimitError
             When they do not rise from the last one queued, or from now.
         """
-        times, signs = np.asarray(times, np.float64), np.asarray(directions, np.int8)
-        if times.ndim != 1 or times.shape != signs.shape or not (np.abs(signs) == 1).all():
-            raise ValueError("expected instants (pulses,) with a direction of 1 or -1 for each")
-        first = float(self._times[-1]) if len(self._times) else self.now
-        if len(times) and not (first <= times[0] and times[-1] < np.inf and (np.diff(times) >= 0).all()):
-            raise LimitError(f"step pulses must rise from {first:g} s on")
-        self._times = np.concatenate([self._times, times])
-        self._signs = np.concatenate([self._signs, signs])
+        self._pulses = self._pulses.followed(times, directions, self.now)
 
     def run(self, ticks: int, *, every: int = 1, switching: bool = False) -> StepperSamples:
         """Go on for some ticks, with the queued pulses in them, and return every ``every``-th sample (samples, 5).
@@ -219,12 +213,12 @@ class StepperKernel:
         """
         if ticks < 0 or every < 1:
             raise ValueError(f"expected ticks >= 0 and every >= 1, not {ticks} and {every}")
-        state, begin, rows = self._state, self._state.tick, ticks // every
+        state, begin, rows, coming = self._state, self._state.tick, ticks // every, self._pulses
         samples, positions = np.empty((rows, COLUMNS)), np.empty(rows, np.int64)
         keep = ffi.new("trochia_stepper_input *", {
             "levels": pointer(self._levels, "const double *"), "rows": len(self._levels),
-            "times": pointer(self._times, "const double *"), "directions": pointer(self._signs, "const int8_t *"),
-            "pulses": len(self._times),
+            "times": pointer(coming.times, "const double *"), "directions": pointer(coming.signs, "const int8_t *"),
+            "pulses": len(coming),
         })  # fmt: skip
         out = (pointer(samples, "double *"), pointer(positions, "int64_t *"))
         parts = (self._motor, self._driver, self._coupling)
@@ -232,7 +226,7 @@ class StepperKernel:
             taken = lib.trochia_chopper_run(*parts, state, keep, self.step, self.sub, ticks, every, *out)
         else:
             taken = lib.trochia_stepper_run(*parts, int(self.mode), state, keep, self.step, ticks, every, *out)
-        self._times, self._signs = self._times[taken:], self._signs[taken:]
+        self._pulses = coming.behind(taken)
         if not np.isfinite([state.current_a, state.current_b, state.theta, state.omega, state.load_theta]).all():
             raise LimitError("the motor's state is no longer a number; take a shorter time step")
         time = (begin + every * np.arange(1, rows + 1)) * self.step
