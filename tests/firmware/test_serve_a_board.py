@@ -121,6 +121,9 @@ def test_a_job_runs_is_held_goes_on_and_ends_with_the_steps_of_its_plan(place: P
     place.ok(c.Override(feed=1.0))
     time.sleep(0.2)
     assert place.edges("X").size == still
+    held = place.client.status.program
+    assert held is not None
+    assert held.line == 2  # also when nothing is left in the board's queue
     place.ok(c.Resume())
     status = place.until("idle")
     assert not status.alarms

@@ -48,6 +48,10 @@ class TorqueUse:
         Of the joint there [mm/s or degree/s]; torque asked and there [N·m].
     lost
         Source lines in which more is asked than there is (n,), in the order of time.
+    rpm
+        Of the motor's shaft there.
+    part
+        Of the acceleration, that would do wherever more is asked than there is; 0: the load alone is too much.
     swing
         Greatest swing of the rotor, by linear theory, as a part of what is safe.
     swing_line, swing_velocity, swing_grows
@@ -63,6 +67,8 @@ class TorqueUse:
     needed: float
     available: float
     lost: NDArray[np.uint32]
+    rpm: float = 0.0
+    part: float = 1.0
     swing: float = 0.0
     swing_line: int = 0
     swing_velocity: float = 0.0
@@ -130,10 +136,11 @@ def _swinging(plan: Plan, use: TorqueUse) -> Problem:
 
 def _problem(plan: Plan, use: TorqueUse) -> Problem:
     unit = plan.machine.axes[0].unit
+    percent = math.floor(100 * use.part)
     enough = (
-        f"A motor with {use.needed:.3g} N·m at that speed would do, or {1 / use.used:.0%} of the acceleration."
-        if math.isfinite(use.used)
-        else "At that speed the motor has no torque at all: less feed would do, or a higher supply."
+        f"A motor with {use.needed:.3g} N·m at that speed would do, or {percent}% of the acceleration."
+        if percent > 0
+        else "At that speed the motor has not the torque for its load alone: less feed would do, or a higher supply."
     )
     return Problem(
         severity=Severity.ERROR,
@@ -141,7 +148,7 @@ def _problem(plan: Plan, use: TorqueUse) -> Problem:
         file=plan.program.name,
         line=int(use.lost[0]),
         message=f"the motor of joint {use.joint} would lose steps{more_lines(use.lost)}: "
-        f"the worst, on line {use.line}, asks {use.needed:.3g} N·m at {use.velocity:.4g} {unit}/s, "
+        f"the worst, on line {use.line}, asks {use.needed:.3g} N·m at {use.velocity:.4g} {unit}/s ({use.rpm:.0f} rpm), "
         f"of {max(use.available, 0.0):.3g} N·m",
         hint=enough,
     )
@@ -187,6 +194,7 @@ def _use(name: str, motor: Drive, row: NDArray[np.float64], block: Samples) -> T
     at = int(np.argmax(used))
     needed = motor.needed(velocity[at], acceleration[at])
     there = motor.braking(velocity[at]) if needed < 0 else motor.available(velocity[at])
+    lost = used > 1.0
     return TorqueUse(
         joint=name,
         used=float(used[at]),
@@ -195,17 +203,26 @@ def _use(name: str, motor: Drive, row: NDArray[np.float64], block: Samples) -> T
         velocity=float(velocity[at]),
         needed=abs(float(needed)),
         available=float(there),
-        lost=block.line[used > 1.0],
+        lost=block.line[lost],
+        rpm=abs(float(velocity[at] / motor.per_radian)) * 60 / math.tau,
+        part=_part(motor, velocity[lost], acceleration[lost]),
     )
+
+
+def _part(motor: Drive, velocity: NDArray[np.float64], acceleration: NDArray[np.float64]) -> float:
+    """Return the part of some accelerations that the motor makes (n,), the least; the load's constant part stays."""
+    if not len(velocity):
+        return 1.0
+    needed, steady = motor.needed(velocity, acceleration), motor.needed(velocity, np.zeros_like(velocity))
+    there = np.where(needed < 0, -motor.braking(velocity), motor.available(velocity))
+    own = needed - steady
+    part = np.where(own != 0.0, (there - steady) / np.where(own != 0.0, own, 1.0), 0.0)
+    return float(np.clip(part, 0.0, 1.0).min())
 
 
 def _worse(before: TorqueUse | None, now: TorqueUse) -> TorqueUse:
     """Return the worse of two uses, with the lost lines of both in order."""
     if before is None:
         return now
-    lost = np.concatenate([before.lost, now.lost])
-    best = before if before.used >= now.used else now
-    return TorqueUse(
-        joint=best.joint, used=best.used, time=best.time, line=best.line, velocity=best.velocity, needed=best.needed,
-        available=best.available, lost=lost,
-    )  # fmt: skip
+    worse = before if before.used >= now.used else now
+    return replace(worse, lost=np.concatenate([before.lost, now.lost]), part=min(before.part, now.part))

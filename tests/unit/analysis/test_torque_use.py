@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
@@ -94,3 +96,21 @@ def test_a_motor_beyond_its_rating_is_a_warning():
     assert hot.ok
     assert [problem.code for problem in hot.problems] == ["too-hot"]
     assert "rated current with 14.4 W" in hot.problems[0].message
+
+
+@pytest.mark.parametrize("force", ["0 N", "30 N", "-30 N"])
+def test_the_part_of_the_acceleration_that_is_offered_does_even_with_a_weight(force: str):
+    asked = 40_000.0
+    stage = STAGE.replace('friction = "8 N"', f'friction = "2 N", force = "{force}"')
+    steep = loads(stage.replace("3000 mm/s²", f"{asked:g} mm/s²").replace("60000", "60000000"))
+    over = api.check(b"G21 G90 G94\nG0 X60\nG0 X0\nM2\n", steep, name="p.ngc", profile="trapezoid")
+    problem = next(one for one in over.problems if one.code == "steps-lost")
+    assert problem.hint is not None
+    offered = re.search(r"(\d+)% of the acceleration", problem.hint)
+    assert offered is not None
+    assert "rpm" in problem.message
+    easier = stage.replace("3000 mm/s²", f"{asked * int(offered[1]) / 100:g} mm/s²").replace("60000", "60000000")
+    held = api.check(b"G21 G90 G94\nG0 X60\nG0 X0\nM2\n", loads(easier), name="p.ngc", profile="trapezoid")
+    assert held.ok
+    more = stage.replace("3000 mm/s²", f"{asked * int(offered[1]) / 100 * 1.05:g} mm/s²").replace("60000", "60000000")
+    assert not api.check(b"G21 G90 G94\nG0 X60\nG0 X0\nM2\n", loads(more), name="p.ngc", profile="trapezoid").ok

@@ -83,6 +83,7 @@ class LiveAvr:
         self._watch: tuple[Watch, ...] = ()
         self._caught: tuple[str, NDArray[np.float64]] | None = None
         self._troubles: list[Trouble] = []
+        self._line = 0  # executed last
 
     def open(self, now: float) -> Report:
         """Connect; see :class:`trochia.backends.live.SegmentBackend`.
@@ -383,7 +384,7 @@ class LiveAvr:
                 self.outputs[name] = value
         self._timed = [entry for entry in self._timed if entry[0] > self._executed + 1e-9]
         sample = self._queue.at(np.array([self._executed]))
-        held = self._queue.held
+        self._line = int(self._queue.held.line[int(sample.row[0])]) if len(self._queue.held) else self._line
         self._queue.forget(self._executed - KEPT if moving else self._executed)
         self._spans = [span for span in self._spans if self._maker.time(span.end) > self._executed - KEPT]
         troubles, self._troubles = tuple(self._troubles), []
@@ -394,7 +395,6 @@ class LiveAvr:
             time=now, executed=self._executed, rate=rate, queued=self._queue.end - self._executed if moving else 0.0,
             commanded=sample.position[0], velocity=sample.velocity[0] * rate, encoder=None, actual=None,
             enabled=self._enabled, beam=int(status["beam"]) / 255 * self._full if rate >= 1.0 else 0.0,
-            line=int(held.line[int(sample.row[0])]) if len(held) else 0,
-            inputs=self.inputs.levels(), outputs=dict(self.outputs), troubles=troubles, caught=self._caught,
-            settable=bool(self.transport.stride),
+            line=self._line, inputs=self.inputs.levels(), outputs=dict(self.outputs), troubles=troubles,
+            caught=self._caught, settable=bool(self.transport.stride),
         )  # fmt: skip
