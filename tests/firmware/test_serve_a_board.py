@@ -140,9 +140,11 @@ def test_jogs_an_abort_an_output_and_the_emergency_stop(place: Place) -> None:
     assert place.steps().tolist()[:2] == [2 * UNITS, -UNITS]
     place.client.jog("X", 20.0, 0.4)  # a lease that is renewed, and then is not
     place.until(  # the board's counters are read beside the client's status: both come to the same place
-        lambda now: now.state == "idle"
-        and now.axes[0].commanded > 3.0
-        and abs(int(place.steps()[0]) - now.axes[0].commanded * UNITS) <= 1.0
+        lambda now: (
+            now.state == "idle"
+            and now.axes[0].commanded > 3.0
+            and abs(int(place.steps()[0]) - now.axes[0].commanded * UNITS) <= 1.0
+        )
     )
     place.ok(c.SetOutput(name="lamp", value=1.0))
     place.until(lambda now: now.io["lamp"] == 1.0)
